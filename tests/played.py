@@ -9,15 +9,18 @@ from __future__ import annotations
 
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 _BLOCK = re.compile(r"^```(?:(console)|\w+ title=\"([\w./-]+)\")\n(.*?)^```$", re.M | re.S)
 _COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)\n?((?:(?!\$ ).*\n?)*)", re.M)
 _OURS = f'#!/bin/sh\nexec "{sys.executable}" -m nl2robot.cli.main "$@"\n'
+_PYTHON = f'#!/bin/sh\nexec "{sys.executable}" "$@"\n'
 _PIP = f'#!/bin/sh\nexec "{sys.executable}" -m tests.pretended_pip "$@"\n'
 
 
@@ -47,35 +50,39 @@ def play(page: Path, folder: Path, installed: Path | None = None) -> int:
         "COLUMNS": "200",
     }
     ran = 0
-    for name, text in blocks(page.read_text("utf-8")):
-        if name is not None:
-            (work / name).parent.mkdir(parents=True, exist_ok=True)
-            (work / name).write_text(text, encoding="utf-8")
-            continue
-        for command, lines in commands(text):
-            status, said = _done(command, work, environment)
-            assert lines or status == 0, f"{command}\nfails:\n{said}"
-            rest = " ".join(said.split())
-            for line in lines:
-                _, found, rest = rest.partition(" ".join(line.split()))
-                assert found, f"{command}\ndoes not say: {line}\nbut:\n{said}"
-            ran += 1
+    with ExitStack() as left:  # what a command has left running ends with the page
+        for name, text in blocks(page.read_text("utf-8")):
+            if name is not None:
+                (work / name).parent.mkdir(parents=True, exist_ok=True)
+                (work / name).write_text(text, encoding="utf-8")
+                continue
+            for command, lines in commands(text):
+                status, said = _done(command, work, environment, left)
+                assert lines or status == 0, f"{command}\nfails:\n{said}"
+                rest = " ".join(said.split())
+                for line in lines:
+                    _, found, rest = rest.partition(" ".join(line.split()))
+                    assert found, f"{command}\ndoes not say: {line}\nbut:\n{said}"
+                ran += 1
     return ran
 
 
 def _tools(folder: Path) -> Path:
-    """`nl2robot` of this checkout, and a `pip` that only puts a package where it is found."""
+    """`nl2robot` and `python` of this checkout, and a `pip` that only puts a package where it is
+    found."""
     tools = folder / "tools"
     tools.mkdir()
-    for name, script in (("nl2robot", _OURS), ("pip", _PIP)):
+    for name, script in (("nl2robot", _OURS), ("python", _PYTHON), ("pip", _PIP)):
         (tools / name).write_text(script, encoding="utf-8")
         (tools / name).chmod(0o755)
     return tools
 
 
-def _done(command: str, work: Path, environment: dict[str, str]) -> tuple[int, str]:
+def _done(
+    command: str, work: Path, environment: dict[str, str], left: ExitStack
+) -> tuple[int, str]:
     """How it ended, and what it said."""
-    done = subprocess.run(
+    started = subprocess.Popen(
         ["bash", "-c", command],
         cwd=work,
         env=environment,
@@ -83,8 +90,15 @@ def _done(command: str, work: Path, environment: dict[str, str]) -> tuple[int, s
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,
-        timeout=100,
+        start_new_session=True,
     )
-    assert "Traceback" not in done.stdout, done.stdout
-    assert done.returncode != 127, f"{command}\nis not there:\n{done.stdout}"
-    return done.returncode, done.stdout
+    left.callback(_end, started.pid)
+    said = started.communicate(timeout=100)[0]
+    assert "Traceback" not in said, said
+    assert started.returncode != 127, f"{command}\nis not there:\n{said}"
+    return started.returncode, said
+
+
+def _end(session: int) -> None:
+    with suppress(ProcessLookupError):
+        os.killpg(session, signal.SIGTERM)

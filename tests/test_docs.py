@@ -27,8 +27,15 @@ def calls(line: str) -> Iterator[list[str]]:
     words = shlex.shlex(line, posix=True, punctuation_chars=True)
     words.whitespace_split = True
     call: list[str] = []
+    elsewhere = False  # "> file": where it is written to
     for word in [*words, ";"]:
-        if set(word) <= set(";|&()"):
+        if elsewhere:
+            elsewhere = False
+        elif "<" in word or ">" in word:
+            elsewhere = True
+            if call and call[-1] in ("1", "2"):
+                call.pop()
+        elif set(word) <= set(";|&()"):
             yield call
             call = []
         else:

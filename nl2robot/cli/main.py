@@ -34,6 +34,8 @@ COMMANDS = {
     "listen": "turn what is said, or a recording, into a program or an answer",
     "routines": "commands with a name: list, explain, learn, change, forget, export, import",
     "schedule": "approved programs at set times: list, add, pause, call off, remove, history",
+    "proposals": "what assistants propose to a server's robot: approve it, or say no",
+    "mcp": "a door for assistants, over the Model Context Protocol",
     "serve": "the robot server on one port, a simulated hospital by default",
     "accounts": "who may come in to the server here: people, and tablets by a QR code",
     "robots": "the kinds of robots there are drivers for, and a check of one robot",

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 import msgspec
 
+from nl2robot.proposals.proposals import Proposal
 from nl2robot.review.review import Review
 from nl2robot.run.answers import Sentence
 from nl2robot.run.runs import Approval, Status
@@ -54,7 +55,7 @@ def _continuing(run: int | None) -> dict[str, int]:
 
 # Learned before there are threads, see `robot_api.schema`.
 msgspec.json.Decoder(
-    tuple[Translation, Review, Approval, Status, Sentence, Left, Appointment, Listed]
+    tuple[Translation, Review, Approval, Status, Sentence, Left, Appointment, Listed, Proposal]
 )
 
 
@@ -221,6 +222,27 @@ class Operator:
             "insists": insists,
         }
         self.robot.request("schedule.approve", parameters)
+
+    def proposals(self) -> list[Proposal]:
+        """Programs that assistants have proposed, the newest last."""
+        return self._request("proposal.list", {}, list[Proposal])
+
+    def approve_proposal(self, proposal: Proposal, insists: bool) -> Proposal:
+        """Approve exactly that program, and start it."""
+        parameters = {
+            "id": proposal.id,
+            "sha256": proposal.sha256,
+            "by": self.name,
+            "insists": insists,
+        }
+        return self._request("proposal.approve", parameters, Proposal)
+
+    def decline_proposal(self, proposal: Proposal, reason: str | None = None) -> Proposal:
+        """Say no to it."""
+        parameters = {"id": proposal.id, "by": self.name}
+        if reason:
+            parameters["reason"] = reason
+        return self._request("proposal.decline", parameters, Proposal)
 
     def run(self, approval: Approval) -> int:
         """Start it; returns the run's number."""

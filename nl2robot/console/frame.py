@@ -187,6 +187,7 @@ def _header(
   </span>
 </header>
 <div id="calls"></div>
+<div id="proposals" role="status"></div>
 <p id="robot-state" class="robot-state" role="alert" hidden></p>
 <p id="notice" class="notice" role="alert" hidden></p>
 <div id="toasts" role="status"></div>

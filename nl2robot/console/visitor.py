@@ -44,7 +44,13 @@ class Visitor:
     @property
     def seat(self) -> Seat:
         role = self.guest.role if self.guest else "observer"
-        return "operator" if role == "administrator" else role
+        match role:
+            case "administrator":
+                return "operator"
+            case "assistant":  # what it may do besides, it does on the wire
+                return "observer"
+            case _:
+                return role
 
     @property
     def operates(self) -> bool:

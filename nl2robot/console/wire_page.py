@@ -42,6 +42,7 @@ GROUPS: Final[Mapping[str, str]] = {
     "runs": "Past runs",
     "routines": "Routines",
     "schedule": "Appointments",
+    "proposal": "Proposals",
     "scene": "The floor",
     "places": "Places",
     "zones": "Keep-out zones",

@@ -26,7 +26,7 @@ from nl2robot.errors import UserError
 from nl2robot.station import passwords
 from robot_api.errors import cause
 from robot_api.serving.access import Guest, new_token
-from robot_api.serving.roles import ROLES, Role
+from robot_api.serving.roles import PERSONAL, Role
 
 LONGEST_NAME: Final = 60
 
@@ -51,8 +51,13 @@ USES_KEPT_EVERY: Final = 30.0
 
 _LARGEST: Final = 2**63 - 1
 """Of the numbers that SQLite knows."""
-LINKED: Final[dict[Role, str]] = {"operator": "operators' link", "observer": "observers' link"}
-"""The links that `nl2robot serve` prints, as they are called in lists."""
+LINKED: Final[dict[Role, str]] = {
+    "operator": "operators' link",
+    "observer": "observers' link",
+    "assistant": "assistants on this computer",
+}
+"""The links that `nl2robot serve` prints, and the one of `nl2robot mcp`, as they are called in
+lists."""
 
 _SCHEMA: Final = """
 CREATE TABLE IF NOT EXISTS accounts (
@@ -213,6 +218,10 @@ class Accounts:
         if kept is not None:
             return str(kept[0])
         return self._begin(role, None, LINKED[role], None, link=True)
+
+    def let_in(self, role: Role, label: str, made_by: str | None) -> str:
+        """The secret by which a program that is no person's comes in from now on."""
+        return self._begin(role, None, _checked_name(label), made_by)
 
     # --- pairing
 
@@ -494,8 +503,8 @@ def _lasts(account: str | None) -> float:
 
 
 def _check_role(role: str) -> None:
-    if role not in ROLES:
-        raise UserError(f"{role!r} is no role. Choose one of {', '.join(ROLES)}.")
+    if role not in PERSONAL:
+        raise UserError(f"{role!r} is no role. Choose one of {', '.join(PERSONAL)}.")
 
 
 def _checked_name(name: str) -> str:

@@ -24,6 +24,7 @@ from robot_api.driver import Driver, Event
 from robot_api.server import Publish, Service
 
 if TYPE_CHECKING:
+    from nl2robot.proposals.proposals import Proposals
     from nl2robot.run.runner import Runner
     from nl2robot.schedule.schedule import Schedule
     from nl2robot.station.entrance import Entrance
@@ -62,6 +63,8 @@ class Backstage:
     runner: Runner
     talks: Talks
     """The conversations, typed and spoken."""
+    proposals: Proposals
+    """Programs that assistants propose."""
     simulation: Simulation | None
     """None where the robot is a real one."""
     publish: Publish

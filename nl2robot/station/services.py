@@ -140,6 +140,7 @@ def services(
             },
             "utterance",
             for_caller=True,
+            right="propose",
             result=Translation,
         ),
         "program.phrases": service(
@@ -163,6 +164,7 @@ def services(
                 "at": {"type": "string", "maxLength": 40},
             },
             "program",
+            right="propose",
             result=Review,
         ),
         "program.unfinished": service(

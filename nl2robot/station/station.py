@@ -20,6 +20,9 @@ from nl2robot.building.broker import BrokerAddress
 from nl2robot.building.joining import House
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.knowledge import Knowledge
+from nl2robot.proposals import proposals as proposing
+from nl2robot.proposals.proposals import Proposals
+from nl2robot.proposals.wire import proposal_services
 from nl2robot.review.apart import think
 from nl2robot.review.review import review, review_apart
 from nl2robot.run import present
@@ -30,6 +33,7 @@ from nl2robot.schedule import service as schedule_service
 from nl2robot.schedule.service import Timekeeper, Timing, schedule_of
 from nl2robot.schedule.wire import schedule_services
 from nl2robot.station.by_hand import BUSY, ByHand
+from nl2robot.station.clients import client_of
 from nl2robot.station.harmless import ONLY_LOOKS
 from nl2robot.station.local_clock import now_in
 from nl2robot.station.part import STOP, Backstage
@@ -45,7 +49,7 @@ from robot_api.client import Robot
 from robot_api.composed import ComposedDriver
 from robot_api.driver import Driver, Event, StopFlag
 from robot_api.drivers import simulated
-from robot_api.errors import AccessDenied, NotPossible, NotTrusted, RobotError
+from robot_api.errors import NotPossible, RobotError
 from robot_api.robots.opening import hold
 from robot_api.robots.places import Places
 from robot_api.robots.reading import Read
@@ -232,13 +236,7 @@ def remote_station(
 ) -> Iterator[Station]:
     """The station at the address of a server. A robot server that runs no programs gets a runner
     here; dry runs then are simulated in `world`."""
-    try:
-        robot = Robot(address, token=token)
-    except NotTrusted as error:
-        raise UserError(str(error), ExitStatus.NO_ROBOT) from error
-    except AccessDenied as error:
-        raise UserError(f"{error} Give the token with --token.", ExitStatus.NO_ROBOT) from error
-    with robot:
+    with client_of(address, token) as robot:
         methods = _methods_of(robot)
         if "program.run" in methods:
             yield Station(address, token)
@@ -353,7 +351,7 @@ def _open(
     def publish(kind: str, data: Mapping[str, Any], to: str | None = None) -> None:
         if kind == "program":
             on_program(data)
-        if kind in ("program", "notice"):
+        if kind in ("program", "notice", proposing.KIND):
             backstage.tell(kind, data)
         server.publish(kind, data, to)
 
@@ -398,12 +396,14 @@ def _open(
         hand.note(who, method, arguments)
 
     talks = Talks()
+    proposals = Proposals(runner, publish)
     attention = Attention()
     microphones = Microphones(lambda: runner.knowledge, talks.of, give_way, publish, runner.think)
     backstage = Backstage(
         driver=driver,
         runner=runner,
         talks=talks,
+        proposals=proposals,
         simulation=simulation,
         entrance=entrance,
         places=places,
@@ -457,6 +457,7 @@ def _open(
         services={
             **services(runner, talks, microphones, schedule),
             **schedule_services(schedule, keeper, runner.log),
+            **proposal_services(proposals),
             **attention.services(),
             **(added.services if added else {}),
         },
@@ -464,6 +465,7 @@ def _open(
             **EVENTS,
             **present.EVENTS,
             **schedule_service.EVENTS,
+            **proposing.EVENTS,
             **(added.events if added else {}),
         },
         remembered=(present.KIND,),

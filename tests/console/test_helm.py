@@ -312,6 +312,7 @@ def ward(tmp_path: Path) -> Iterator[Ward]:
         driver=driver,
         runner=runner,
         talks=None,
+        proposals=None,
         simulation=simulation,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),

@@ -29,6 +29,7 @@ class Console:
             driver=self.driver,
             runner=runner,
             talks=None,  # type: ignore[arg-type]
+            proposals=None,  # type: ignore[arg-type]
             simulation=self.simulation,
             publish=lambda kind, data, to=None: self.published.append((kind, data)),
             wanted=lambda kind: True,

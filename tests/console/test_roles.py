@@ -41,18 +41,22 @@ OBSERVER = {
     *("routines.list", "routines.show", "routines.export", "station.state"),
     *("program.phrases", "program.wait", "program.state", "program.list"),
     *("program.answer", "program.unfinished"),
+    *("proposal.list", "proposal.show", "proposal.wait"),
+}
+ASSISTANT = OBSERVER | {
+    *("program.translate", "program.check", "proposal.make", "proposal.withdraw"),
 }
 PAGES = {
-    "/": {"observer", "operator", "administrator"},
-    "/map": {"observer", "operator", "administrator"},
-    "/drive": {"observer", "operator", "administrator"},
-    "/runs": {"observer", "operator", "administrator"},
-    "/routines": {"observer", "operator", "administrator"},
-    "/schedule": {"observer", "operator", "administrator"},
+    "/": {"observer", "assistant", "operator", "administrator"},
+    "/map": {"observer", "assistant", "operator", "administrator"},
+    "/drive": {"observer", "assistant", "operator", "administrator"},
+    "/runs": {"observer", "assistant", "operator", "administrator"},
+    "/routines": {"observer", "assistant", "operator", "administrator"},
+    "/schedule": {"observer", "assistant", "operator", "administrator"},
     "/devices": {"operator", "administrator"},
     "/face": set(ROLES),
     "/static/wire.js": set(ROLES),
-    "/nothing/here": {"observer", "operator", "administrator"},
+    "/nothing/here": {"observer", "assistant", "operator", "administrator"},
 }
 OPEN = ("/healthz", "/sign-in", "/join/nonsense", "/trust", "/static/console.css")
 """What somebody gets to see whom nobody knows."""
@@ -76,6 +80,7 @@ def secrets(house: Served) -> Iterator[dict[Role, str]]:
     secrets: dict[Role, str] = {
         "administrator": accounts.sign_in("Ann", "correct horse battery", "", "") or "",
         **{role: accounts.join(accounts.invite(role, role, None)) or "" for role in roles.PAIRED},
+        "assistant": accounts.let_in("assistant", "Sam", None),
     }
     # The server notices what another process has changed.
     ends = time.monotonic() + 30
@@ -121,7 +126,9 @@ def test_every_method_is_for_whom_it_should_be(
             kind for kind in kinds if not _unheard(robot, kind)
         }
     of_everybody = {"rpc.cancel", "rpc.subscribe", "rpc.unsubscribe"}
-    every = {"face": FACE, "observer": OBSERVER}.get(role, methods) | of_everybody
+    every = {"face": FACE, "observer": OBSERVER, "assistant": ASSISTANT}.get(
+        role, methods
+    ) | of_everybody
     assert allowed == every
     assert heard == ({*roles.TOLD_TO_FACES} & {*kinds} if role == "face" else {*kinds})
 

@@ -38,6 +38,7 @@ class Watched:
             driver=driver,
             runner=SimpleNamespace(knowledge=SimpleNamespace(world=world)),  # type: ignore[arg-type]
             talks=None,  # type: ignore[arg-type]
+            proposals=None,  # type: ignore[arg-type]
             simulation=simulation,
             publish=lambda kind, data, to=None: self.frames.put(dict(data)),
             wanted=self._wanted,

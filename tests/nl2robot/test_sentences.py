@@ -53,6 +53,7 @@ SAYING = {
     "nl2robot/station/robots.py": {"UserError"},
     "nl2robot/building": {"BadBroker"},
     "nl2robot/schedule": {"UserError", "BadRhythm", "BadTrigger", "BookError", "AccessDenied"},
+    "nl2robot/proposals": {"UserError", "AccessDenied"},
     "nl2robot/station/station.py": {"UserError"},
     "nl2robot/models/catalogue.py": {"ModelError"},
     "nl2robot/translate/planners.py": {"UserError"},

@@ -16,7 +16,7 @@ from nl2robot.station.accounts import INVITED_FOR, Accounts
 from nl2robot.station.entrance import PAGES_AT
 from nl2robot.station.passwords import SHORTEST
 from nl2robot.station.qr_code import in_terminal
-from robot_api.serving.roles import PAIRED, ROLES
+from robot_api.serving.roles import PAIRED, PERSONAL
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,18 +24,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     actions.add_parser("list", help="accounts, devices and links, and who failed to sign in")
     add = actions.add_parser("add", help="make an account; asks for its password")
     add.add_argument("name")
-    add.add_argument("--role", choices=ROLES[1:], default="operator", help="(default: operator)")
+    add.add_argument("--role", choices=PERSONAL, default="operator", help="(default: operator)")
     remove = actions.add_parser("remove", help="end an account, and whatever it is signed in on")
     remove.add_argument("name")
     password = actions.add_parser("password", help="give an account another password")
     password.add_argument("name")
     role = actions.add_parser("role", help="give an account another role")
     role.add_argument("name")
-    role.add_argument("role", choices=ROLES[1:])
+    role.add_argument("role", choices=PERSONAL)
     pair = actions.add_parser("pair", help="show a QR code by which one tablet comes in")
     pair.add_argument("role", choices=PAIRED)
     pair.add_argument("--label", help="what the tablet is called, such as where it hangs")
     pair.add_argument("--address", metavar="URL", help="of the pages, if others than the last")
+    token = actions.add_parser("token", help="make a token by which an assistant comes in")
+    token.add_argument("name", help="what the assistant is called, as people see it")
     withdraw = actions.add_parser("withdraw", help="let nobody come in by a device or link again")
     withdraw.add_argument("number", type=int, help="as `nl2robot accounts list` has it")
 
@@ -61,6 +63,14 @@ def run(options: argparse.Namespace) -> int:
                 print(f"{options.name} is {options.role} now.")
             case "pair":
                 _pair(accounts, options)
+            case "token":
+                secret = accounts.let_in("assistant", options.name, _who())
+                print(secret)
+                print(
+                    f"{options.name} comes in by it: it sees what goes on, proposes programs and"
+                    " can stop the robot. It is not shown again; keep it as you keep a password.",
+                    file=sys.stderr,
+                )
             case "withdraw":
                 accounts.withdraw(options.number)
                 print(f"Nobody comes in by {options.number} any more.")

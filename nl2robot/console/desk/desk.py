@@ -90,6 +90,9 @@ class Desk:
             elif (rest := request.query_params.get("go_on", "")[:9]).isdecimal():
                 go_on = self.dialogue.go_on
                 ui.timer(0, lambda: self._do(go_on, int(rest), visit.language), once=True)
+            elif (number := request.query_params.get("proposal", "")[:9]).isdecimal():
+                take_up = self.dialogue.take_up
+                ui.timer(0, lambda: self._do(take_up, int(number), visit.language), once=True)
             elif program:
                 # Whoever wrote a link elsewhere may want it approved unread.
                 foreign = request.headers.get("sec-fetch-site", "same-origin") != "same-origin"
@@ -307,7 +310,7 @@ class Desk:
             await self._do(dialogue.planned, appointment, when, language)
 
         async def reject(event: GenericEventArguments) -> None:
-            await self._do(dialogue.reject, language)
+            await self._do(dialogue.reject, language, who)
 
         def shade(event: GenericEventArguments) -> None:
             self.editor.theme = "githubDark" if event.args["dark"] else "githubLight"

@@ -23,6 +23,7 @@ from grammar.samples import samples
 from nl2robot.console.desk.thought import Thought
 from nl2robot.console.visitor import texts
 from nl2robot.errors import UserError
+from nl2robot.proposals.proposals import Proposal
 from nl2robot.review.review import Review, digest
 from nl2robot.run.answers import answer
 from nl2robot.run.going_on import asks_to_go_on
@@ -81,6 +82,8 @@ class Draft:
     changed_by: str | None = None
     times: Scheduled | None = None
     """The set times at which it is to be done, if some were said."""
+    proposal: int | None = None
+    """The proposal that it is, if an assistant made it."""
 
     @property
     def edited(self) -> bool:
@@ -426,6 +429,20 @@ class Dialogue:
         with self._turn:
             self._take(translation, None, language, "", harmless=False)
 
+    def take_up(self, number: int, language: str) -> None:
+        """Lay a program before the operator that an assistant proposes."""
+        try:
+            proposal = self._backstage.proposals.one(number)
+        except UserError as error:
+            self._tell(Line("robot", str(error), "trouble"))
+            return
+        self._tell(Line("robot", proposed_in_words(proposal, language)))
+        if proposal.state != "waiting":
+            self._tell(Line("robot", _said("proposal_over", language)))
+            return
+        with self._turn:
+            self._review(Draft(proposal.program, proposal=number), language)
+
     def touch(self, program: str, who: str) -> None:
         """Somebody is changing the program: from now on there is nothing that could be approved."""
         draft = self.draft
@@ -490,23 +507,8 @@ class Dialogue:
             if not (review.came_through or insists):
                 self._tell(Line("robot", _said("must_insist", language), "trouble"))
                 return
-            translation = draft.translation
-            plan = None if draft.edited or translation is None else translation.plan
             try:
-                approval = runner.approve(
-                    program,
-                    digest(program),
-                    who,
-                    utterance=translation.utterance if translation else draft.said,
-                    heard=draft.heard,
-                    language=language,
-                    plan=msgspec.json.encode(plan).decode() if plan is not None else None,
-                    continues=draft.continues,
-                    proposed=draft.proposed,
-                    changed_by=draft.changed_by,
-                    insists=insists,
-                )
-                self.runs.add(runner.run(approval.id))
+                self.runs.add(self._begun(draft, program, who, language, insists))
             except AccessDenied as error:
                 if insists:
                     self._tell(Line("robot", str(error), "trouble"))
@@ -526,10 +528,39 @@ class Dialogue:
             self.draft = None
             self._changed()
 
-    def reject(self, language: str) -> None:
+    def _begun(self, draft: Draft, program: str, who: str, language: str, insists: bool) -> int:
+        """Approve a program that was reviewed, and start it; returns the run's number."""
+        runner = self._backstage.runner
+        if draft.proposal is not None:
+            decided = self._backstage.proposals.approve(
+                draft.proposal, digest(program), who, program=program, insists=insists
+            )
+            assert decided.run is not None
+            return decided.run
+        translation = draft.translation
+        plan = None if draft.edited or translation is None else translation.plan
+        approval = runner.approve(
+            program,
+            digest(program),
+            who,
+            utterance=translation.utterance if translation else draft.said,
+            heard=draft.heard,
+            language=language,
+            plan=msgspec.json.encode(plan).decode() if plan is not None else None,
+            continues=draft.continues,
+            proposed=draft.proposed,
+            changed_by=draft.changed_by,
+            insists=insists,
+        )
+        return runner.run(approval.id)
+
+    def reject(self, language: str, who: str = "") -> None:
         """Nothing of it is done."""
         with self._turn:
             if self.draft is not None:
+                if self.draft.proposal is not None:
+                    with suppress(UserError):  # somebody else was faster
+                        self._backstage.proposals.decline(self.draft.proposal, who)
                 self.draft = None
                 self._tell(Line("robot", _said("rejected", language)))
 
@@ -575,3 +606,11 @@ def _changed_by_hand(draft: Draft, program: str, who: str) -> Draft:
 
 def _said(key: str, language: str) -> str:
     return texts("desk", language)[key]
+
+
+def proposed_in_words(proposal: Proposal, language: str) -> str:
+    """Who proposes it and what for, as they say: marked as theirs."""
+    told = _said("proposed", language).format(by=proposal.by, sentence=proposal.sentence)
+    if proposal.why:
+        told += "\n" + _said("proposed_why", language).format(why=proposal.why)
+    return told

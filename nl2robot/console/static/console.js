@@ -3,6 +3,7 @@
 import '/static/focus.js';
 import {element, filled, keep, timeOfDay} from '/static/page.js';
 import {mountNotices} from '/static/notices.js';
+import {mountProposals} from '/static/proposals.js';
 import {present} from '/static/state.js';
 import {mountStop} from '/static/stop.js';
 import {wire} from '/static/wire.js';
@@ -154,6 +155,7 @@ mountNotices({wire, words, language, robot});
 wire.onChange(showConnection);
 present.onChange(showState);
 if (role === 'operator') {
+  mountProposals(document.getElementById('proposals'), {wire, words, language, robot});
   openCalls();
   const button = document.getElementById('frame-microphone');
   if (button) openMicrophone(button);

@@ -107,15 +107,15 @@ function toast(sentence, words) {
   setTimeout(fade, STAYS_FOR);
 }
 
-/** Several open pages tell it once: the tag is the same. */
-function tellBrowser(sentence, id, {words, language, robot}) {
+/** Several open pages tell it once: the tag is the same. `address`: the page to look at it. */
+export function tellBrowser(sentence, id, {words, language, robot, address = '/schedule'}) {
   if (notifies() !== 'on') return;
   try {
     const tag = id === null ? 'nl2robot' : `nl2robot-${id}`;
     const told = new Notification(filled(words.notice_from_robot, {robot}), {body: sentence, tag, lang: language, icon: '/static/icon.svg'});
     told.addEventListener('click', () => {
       window.focus();
-      location.assign('/schedule');
+      location.assign(address);
     });
   } catch {
     // Browsers of phones have them for installed pages only; the toast says it.

@@ -11,16 +11,15 @@ from typing import Any, Final, TypeVar
 
 import msgspec
 
-from nl2robot.errors import ExitStatus, UserError
 from nl2robot.paths import data_folder
 from nl2robot.review.review import Review
 from nl2robot.run.runlog import RunLog
 from nl2robot.schedule.appointments import Appointment
 from nl2robot.schedule.reminders import Reminder, reminders
 from nl2robot.schedule.schedule import FILE, Came, Listed, Schedule, Told
+from nl2robot.station.clients import client_of
 from nl2robot.station.robots import Chosen
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, NotTrusted
 
 RUNS: Final = "runs.sqlite"
 """The run log's name, beside the book."""
@@ -74,13 +73,7 @@ def book_of(options: argparse.Namespace, robot: Chosen) -> Iterator[Schedule | D
         finally:
             here.close()
         return
-    try:
-        client = Robot(robot.server, token=options.token)
-    except NotTrusted as error:
-        raise UserError(str(error), ExitStatus.NO_ROBOT) from error
-    except AccessDenied as error:
-        raise UserError(f"{error} Give the token with --token.", ExitStatus.NO_ROBOT) from error
-    with client:
+    with client_of(robot.server, options.token) as client:
         yield Distant(client)
 
 

@@ -1,0 +1,62 @@
+"""`nl2robot mcp`: a door for assistants, over the Model Context Protocol.
+
+It is started by the assistant's program (stdio), or once for all on this machine (--http), and is
+itself a client of a running `nl2robot serve`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+
+from nl2robot.assistant.link import connected
+from nl2robot.cli.options.robot import add_ca, trust
+from nl2robot.cli.options.values import whole
+from nl2robot.errors import ExitStatus, UserError
+from robot_api.server import DEFAULT_PORT
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    here = f"ws://127.0.0.1:{DEFAULT_PORT}"
+    parser.add_argument(
+        "--robot", default=here, metavar="ADDRESS", help=f"the robot server (default: {here})"
+    )
+    add_ca(parser)
+    parser.add_argument(
+        "--token", help="what `nl2robot accounts token NAME` printed on the robot's computer"
+    )
+    parser.add_argument(
+        "--http",
+        type=whole(1, 65535),
+        metavar="PORT",
+        help="serve streamable HTTP on this port of this machine, instead of stdin and stdout",
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    try:
+        from nl2robot.assistant.server import assistant_server
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] not in ("mcp", "mcp_types"):
+            raise
+        raise UserError(
+            "The door for assistants needs the package mcp. Install it: pip install"
+            " 'nl2robot[assistants]'."
+        ) from error
+    trust(options)
+    logging.basicConfig(level=logging.WARNING, stream=sys.stderr)
+    link = connected(options.robot, options.token)
+    try:
+        server = assistant_server(link)
+        if options.http is None:
+            server.run("stdio")
+        else:
+            print(
+                f"Assistants on this machine find the robot at http://127.0.0.1:{options.http}/mcp.",
+                file=sys.stderr,
+            )
+            server.run("streamable-http", host="127.0.0.1", port=options.http)
+    finally:
+        link.close()
+    return ExitStatus.OK

@@ -1,0 +1,35 @@
+"""A proposal as somebody at a terminal decides on it."""
+
+from __future__ import annotations
+
+from nl2robot.cli.operator import Operator
+from nl2robot.cli.terminal import Terminal
+from nl2robot.errors import ExitStatus
+from nl2robot.plain import visible
+from nl2robot.proposals.proposals import Proposal
+
+
+def decide_on(operator: Operator, terminal: Terminal, proposal: Proposal) -> ExitStatus:
+    """Show what is proposed, and have somebody decide."""
+    words = terminal.words
+    show = terminal.console.print
+    show(visible(words["proposed"].format(by=proposal.by, text=proposal.sentence)), markup=False)
+    if proposal.why:
+        show(visible(words["proposed_why"].format(text=proposal.why)), markup=False)
+    operator.reviewing(True)
+    try:
+        review = operator.check(proposal.program, terminal.language)
+        terminal.show_review(review)
+        decision = terminal.decide(review)[0]
+    finally:
+        operator.reviewing(False)
+    if decision != "approve":
+        operator.decline_proposal(proposal)
+        show(words["rejected"], markup=False)
+        return ExitStatus.NOT_APPROVED
+    decided = operator.approve_proposal(proposal, insists=not review.came_through)
+    assert decided.run is not None
+    status = operator.wait(decided.run)
+    came = operator.answer(decided.run, terminal.language)
+    terminal.show_answer(came, status.state, status.message, status.error)
+    return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED

@@ -1,0 +1,1 @@
+"""Programs that somebody proposes who may not approve them, until a person has decided."""

@@ -1,0 +1,113 @@
+"""The methods on the wire for proposals: `proposal.make` to `proposal.decline`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+from nl2robot.errors import UserError
+from nl2robot.proposals.proposals import HOLDS, Made, Proposal, Proposals
+from nl2robot.wire import service, service_of_call
+from robot_api.methods import MAX_TEXT
+from robot_api.server import Context, Service
+from sandbox.limits import MAX_PROGRAM
+
+_NUMBER: Final = {"type": "integer", "minimum": 1}
+_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
+_NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
+_SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+_TEXT: Final = {"type": "string", "maxLength": MAX_TEXT}
+
+
+def proposal_services(proposals: Proposals) -> dict[str, Service]:
+    """The methods to register with a `robot_api.server.Server`."""
+
+    def made(p: Mapping[str, Any], context: Context) -> Made:
+        # Whoever has no account may call themselves anything, but not what somebody is called.
+        by = p["by"] if context.who else f"“{p['by']}”"
+        for name in ("sentence", "why"):
+            if not p.get(name, "").isprintable():
+                raise UserError(f"The text of `{name}` is one line without control characters.")
+        return proposals.make(
+            p["program"],
+            p["sentence"],
+            by,
+            p.get("why", ""),
+            p.get("language", "en"),
+            context.who or "",
+        )
+
+    def waited(p: Mapping[str, Any], context: Context) -> Proposal:
+        return proposals.wait(p["id"], p.get("timeout", HOLDS), context.stop.is_set)
+
+    def withdrawn(p: Mapping[str, Any], context: Context) -> Proposal:
+        return proposals.withdraw(p["id"], p["by"] if context.who else f"“{p['by']}”")
+
+    return {
+        "proposal.make": service_of_call(
+            made,
+            "Lay a program before those who decide: `sentence` says what it is to do, `why` what"
+            " they should know. It is reviewed at once; one with an error is refused. It runs when"
+            " somebody approves it, and waits ten minutes for that.",
+            {
+                "program": {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM},
+                "sentence": {**_TEXT, "minLength": 1},
+                "by": _NAME,
+                "why": _TEXT,
+                "language": _LANGUAGE,
+            },
+            "program sentence by",
+            right="propose",
+            result=Made,
+        ),
+        "proposal.list": service(
+            lambda p: proposals.all(),
+            "List the proposals since the server began, the newest last.",
+            observes=True,
+            result=list[Proposal],
+        ),
+        "proposal.show": service(
+            lambda p: proposals.one(p["id"]),
+            "Tell how a proposal stands.",
+            {"id": _NUMBER},
+            "id",
+            observes=True,
+            result=Proposal,
+        ),
+        "proposal.wait": service_of_call(
+            waited,
+            "Wait until a proposal is decided, `timeout` seconds at most, and tell how it stands.",
+            {"id": _NUMBER, "timeout": {"type": "number", "minimum": 0, "maximum": HOLDS}},
+            "id",
+            observes=True,
+            for_caller=True,
+            lane="wait",
+            result=Proposal,
+        ),
+        "proposal.withdraw": service_of_call(
+            withdrawn,
+            "Take back a proposal that is not decided, and one's own.",
+            {"id": _NUMBER, "by": _NAME},
+            "id by",
+            right="propose",
+            result=Proposal,
+        ),
+        "proposal.approve": service(
+            lambda p: proposals.approve(
+                p["id"], p["sha256"], p["by"], insists=p.get("insists", False)
+            ),
+            "Approve exactly the proposed program with this SHA-256, and begin it at once; `run` is"
+            " its run. One that does not come to its end in the dry run is refused unless somebody"
+            " `insists`.",
+            {"id": _NUMBER, "sha256": _SHA256, "by": _NAME, "insists": {"type": "boolean"}},
+            "id sha256 by",
+            result=Proposal,
+        ),
+        "proposal.decline": service(
+            lambda p: proposals.decline(p["id"], p["by"], p.get("reason")),
+            "Say no to a proposal, and why.",
+            {"id": _NUMBER, "by": _NAME, "reason": _TEXT},
+            "id by",
+            result=Proposal,
+        ),
+    }
