@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from grammar.happenings import Happening
 from grammar.language import load_language
 from grammar.tokens import tokenise
 
@@ -95,6 +96,8 @@ class Request:
     when: When | None = None
     """Of "schedule", what those words say; None if they are not understood. Of "skip" the day, of
     "unschedule" the time of day, if one was said."""
+    happening: Happening | None = None
+    """Of "schedule", what it is to be done at instead, each time (`grammar.standing`)."""
 
 
 def agreed(text: str, language: str = "en") -> bool | None:

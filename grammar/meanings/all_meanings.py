@@ -65,6 +65,7 @@ import grammar.meanings.signatures
 import grammar.meanings.some_places
 import grammar.meanings.sources
 import grammar.meanings.speaking
+import grammar.meanings.standing
 import grammar.meanings.stops
 import grammar.meanings.strangers
 import grammar.meanings.telling_if
