@@ -472,5 +472,9 @@ class Session:
 def wished(planned: Scheduled) -> Wish:
     """What somebody has asked for in a sentence."""
     return Wish(
-        rhythm=planned.rhythm, when=planned.when, sentence=planned.sentence, plan=planned.plan
+        rhythm=planned.rhythm,
+        trigger=planned.trigger,
+        when=planned.when,
+        sentence=planned.sentence,
+        plan=planned.plan,
     )

@@ -24,6 +24,7 @@ NoticeKind = Literal[
     "missed_many",
     "overtaken",
     "waits",
+    "ends_soon",
     "ended",
     "changed",
     "refused",
@@ -41,6 +42,8 @@ NONE: Final = 0
 """The number of the appointment of what somebody had done at once."""
 
 DAY: Final = 24 * 3600.0
+ENDS_SOON: Final = 3 * DAY
+"""Seconds before an approval ends in which that is told, once."""
 HOLDS: Final = 30 * DAY
 """Seconds for which an appointment is approved, unless somebody says otherwise."""
 MAKES_UP_AT_MOST: Final = 24 * 60

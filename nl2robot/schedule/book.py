@@ -405,6 +405,15 @@ class Book:
             Notice(**{**row, "parts": msgspec.json.decode(row["parts"])}) for row in reversed(rows)
         ]
 
+    def was_told(self, kind: NoticeKind, appointment: int, since: float) -> bool:
+        """Whether such a notice was written from that moment on."""
+        return bool(
+            self._read(
+                "SELECT 1 FROM notices WHERE kind = ? AND appointment = ? AND time >= ? LIMIT 1",
+                *(kind, appointment, since),
+            )
+        )
+
     # --- forgetting
 
     def forget(self, before: float) -> None:

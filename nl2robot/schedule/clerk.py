@@ -29,6 +29,7 @@ import msgspec
 
 from nl2robot.schedule.appointments import (
     DAY,
+    ENDS_SOON,
     NONE,
     Appointment,
     Notice,
@@ -91,6 +92,8 @@ class Clerk:
         self._settings = settings or Settings()
         self._next: dict[int, tuple[float, float | None]] = {}
         """By appointment: until when it was looked at, and when it is due after that."""
+        self._ends: dict[int, float] = {}
+        """By appointment: of which end of its approval it is known that it was told before."""
         self._told = self._newest_notice()
 
     def look(self, now: float, waits_for: Waits | None = None) -> Begin | None:
@@ -104,6 +107,7 @@ class Clerk:
         gone = self._next.keys() - {each.id for each in appointments}
         for number in gone:
             del self._next[number]
+            self._ends.pop(number, None)
         return self._choose(now, waits_for)
 
     def next_look(self, now: float) -> float | None:
@@ -184,13 +188,29 @@ class Clerk:
         return newest[-1].id if newest else 0
 
     def _look_at_approval(self, appointment: Appointment, now: float) -> None:
-        if appointment.asked is None and appointment.approved_until <= now:
-            rhythm = appointment.rhythm
+        if appointment.asked is not None:
+            return
+        ends, rhythm = appointment.approved_until, appointment.rhythm
+        if ends <= now:
             if rhythm is not None and next_time(rhythm, appointment.looked) is None:
                 return  # nothing more would come
             with self._book.at_once():
                 self._book.ask(appointment.id, "ended")
                 self._tell("ended", appointment, by=appointment.approved_by)
+        elif ends - now <= ENDS_SOON < ends - appointment.approved_at:
+            self._look_ahead(appointment)
+
+    def _look_ahead(self, appointment: Appointment) -> None:
+        """Tell once that its approval ends, if it would come again after that."""
+        ends, rhythm = appointment.approved_until, appointment.rhythm
+        if self._ends.get(appointment.id) == ends:
+            return
+        self._ends[appointment.id] = ends
+        if rhythm is not None and next_time(rhythm, ends) is None:
+            return
+        with self._book.at_once():
+            if not self._book.was_told("ends_soon", appointment.id, appointment.approved_at):
+                self._tell("ends_soon", appointment, by=appointment.approved_by, ends=ends)
 
     def _look_at_times(self, appointment: Appointment, now: float) -> None:
         assert appointment.rhythm is not None

@@ -48,8 +48,8 @@ LATEST_RUNS: Final = 200
 EVENTS: Final[Mapping[str, str]] = {
     "schedule": "open (what waits, begins or runs now, as schedule.history tells it): something in"
     " the book of appointments has changed; schedule.list tells all of it",
-    "notice": "id, time, kind (missed | missed_many | overtaken | waits | ended | changed | refused"
-    " | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away |"
+    "notice": "id, time, kind (missed | missed_many | overtaken | waits | ends_soon | ended |"
+    " changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away |"
     " reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once),"
     " occurrence, parts, told (the sentence by language): what somebody has to know who was not"
     " looking",

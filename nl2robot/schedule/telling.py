@@ -7,8 +7,8 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.schedule.appointments import Appointment, Notice, Occurrence
-from nl2robot.schedule.triggers import Trigger
-from nl2robot.schedule.words import a_moment, in_words
+from nl2robot.schedule.triggers import ANYBODY, MINUTE, Trigger
+from nl2robot.schedule.words import a_moment, in_words, passing
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 
@@ -24,6 +24,8 @@ def told(notice: Notice, language: str = "en", zone: str = _UTC) -> str:
         parts["due"] = a_moment(parts["due"], zone, language)
     if "first" in parts:
         parts["first"] = a_moment(parts["first"], zone, language, weekday=False)
+    if "ends" in parts:
+        parts["ends"] = a_moment(parts["ends"], zone, language)
     if "why" in parts:
         named = texts["waits_for" if notice.kind == "waits" else "whys"]
         parts["why"] = named.get(parts["why"], parts["why"])
@@ -64,13 +66,23 @@ def when(appointment: Appointment, language: str = "en") -> str:
 
 def happening(trigger: Trigger, language: str = "en") -> str:
     """What begins it, in words: "when the battery falls below 20 %"."""
-    texts = texts_in(language, "schedules")["happenings"]
+    texts = texts_in(language, "schedules")
     named: str = trigger.what
-    if trigger.what == "seen" and trigger.place:
-        named += "_there"
+    if trigger.what == "seen":
+        named += "_anybody" if trigger.thing == ANYBODY else ""
+        named += "_there" if trigger.place else ""
     elif trigger.what in ("scanned", "message") and trigger.text:
         named += "_so"
-    return str(texts[named]).format(**msgspec.structs.asdict(trigger))
+    said = str(texts["happenings"][named]).format(**msgspec.structs.asdict(trigger))
+    if trigger.every == MINUTE:
+        return said
+    whole = trigger.every % MINUTE == 0
+    every = passing(
+        "minutes" if whole else "seconds",
+        round(trigger.every / MINUTE if whole else trigger.every),
+        language,
+    )
+    return str(texts["happenings"]["rarely"]).format(happening=said, every=every)
 
 
 def _sentence(text: str, language: str) -> str:

@@ -29,6 +29,8 @@ from nl2robot.schedule.topics import is_topic, matches
 
 What = Literal["battery", "place", "seen", "heard", "scanned", "pressed", "message"]
 MINUTE: Final = 60.0
+ANYBODY: Final = "person"
+"""What is seen where anybody is meant."""
 SHORTEST: Final = 5.0
 """Seconds between two times at least, whatever somebody wishes."""
 REARMED_AT: Final = 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from nl2robot.schedule.rhythm import WEEKDAYS, Rhythm, local, parts_of
 from nl2robot.texts import texts_in
@@ -150,6 +150,14 @@ def _at(moments: Sequence[str], texts: Mapping[str, Any]) -> str:
         every = _every("MINUTELY", steps.pop(), texts)
         return str(texts["passing"]).format(every=every, first=moments[0], last=moments[-1])
     return str(texts["at"]).format(times=_listed(moments, texts))
+
+
+def passing(unit: Literal["minutes", "seconds"], number: int, language: str = "en") -> str:
+    """ "every 10 minutes", "every 2 hours", "every 30 seconds"."""
+    texts = texts_in(language, "schedules")
+    if unit == "minutes":
+        return _every("MINUTELY", number, texts)
+    return _counted(texts["seconds"], number).format(number=number)
 
 
 def _every(frequency: str, interval: int, texts: Mapping[str, Any]) -> str:

@@ -11,18 +11,21 @@ from grammar.language import load_language
 from grammar.requests import Request
 from nl2robot.plain import visible
 from nl2robot.schedule.rhythm import Rhythm
+from nl2robot.schedule.triggers import Trigger
 from nl2robot.words import authorship
 
 Status = Literal["ok", "clarify", "rejected"]
 
 
 class Scheduled(msgspec.Struct, frozen=True, kw_only=True):
-    """What is to be done at set times, once somebody has approved it for them; the fields of the
-    program are those of its `Translation`."""
+    """What is to be done at set times, or each time that something happens, once somebody has
+    approved it for them; the fields of the program are those of its `Translation`."""
 
-    rhythm: Rhythm
+    rhythm: Rhythm | None = None
+    trigger: Trigger | None = None
+    """What begins it instead of the clock."""
     when: str
-    """The rhythm in words: "every day at 08:00"."""
+    """The rhythm or the event in words: "every day at 08:00"."""
     sentence: str
     """What is to be done, as it was said, without the times."""
     program: str
@@ -79,7 +82,7 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     """What is asked of the application instead of the robot, such as to learn a routine; there
     is no program then, and the message is the answer."""
     schedule: Scheduled | None = None
-    """What is asked to be done at set times. There is no program to be run now then: this one is
+    """What is asked to be done at set times or at an event. There is no program to be run now then: this one is
     reviewed and approved for those times (`schedule.add` on the wire)."""
 
     def to_json(self) -> str:

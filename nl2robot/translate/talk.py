@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from grammar.understanding import Context
 from nl2robot.schedule import talking as appointments
 from nl2robot.schedule.asking import Timeless
+from nl2robot.schedule.standing import Doubtful
 
 if TYPE_CHECKING:
     from nl2robot.deliberation.deciding import Offer
@@ -34,6 +35,8 @@ class Talk:
     whatever language they seem to be in, and whatever the robot remembers."""
     timeless: Timeless | None = None
     """What is to be done at a time of day that was asked back."""
+    doubtful: Doubtful | None = None
+    """An order of which it was asked whether it is meant each time."""
     who: str = ""
     """Who speaks; noted with the routines that they teach."""
 

@@ -44,6 +44,7 @@ from nl2robot.schedule.words import in_words
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from nl2robot.translate.courtesies import courtesy
+from nl2robot.translate.each_time import each_time, ordered
 from nl2robot.translate.other_language import language_of
 from nl2robot.translate.outcome import Scheduled, Status, Translation
 from nl2robot.translate.planners import AUTO, available, planner
@@ -78,12 +79,14 @@ def translate(
     watch: Watch | None = None,
     do: Do = here,
     schedule: Schedule | None = None,
+    as_errand: bool = False,
 ) -> Translation:
     """Understand an utterance and write it as a program. Never moves anything, never raises for
     words that are not understood: the status says so. A `talk` remembers it; `history` knows what
     was run, for questions about it; `watch` is told how far it is, and may end it; `do`
     does what computes for more than a moment (`nl2robot.review.apart.think`: in another process);
-    `schedule` knows the appointments, for questions about them.
+    `schedule` knows the appointments, for questions about them; `as_errand`: it is no order for
+    each time that something happens.
     Raises `UserError` for a language or a planner that there is not, and
     `grammar.planning.planner.Interrupted` when `watch` has ended it."""
     started, watch, talk = time.perf_counter(), watch or Watch(), talk or Talk()
@@ -96,6 +99,19 @@ def translate(
     later = _with_its_time(utterance, knowledge, language, planner, talk, watch, do)
     if later is not None:
         return later
+    if not as_errand:
+
+        def errand(said: str, in_talk: Talk) -> Translation:
+            return translate(
+                said, knowledge, language, planner, in_talk, watch=watch, do=do, as_errand=True
+            )
+
+        order = ordered(utterance, knowledge, language)
+        kept = schedule is not None
+        each = each_time(utterance, order, knowledge, language, talk, errand, kept)
+        if each is not None and each.translation is not None:
+            return msgspec.structs.replace(each.translation, ms=_milliseconds(started))
+        utterance = each.errand if each is not None else utterance
     record = history.last() if history is not None else None
     if talk.context is not None and talk.carried_out(record):
         assert record is not None

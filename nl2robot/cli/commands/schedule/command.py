@@ -19,7 +19,7 @@ from nl2robot.cli.operator import Wish
 from nl2robot.cli.options.robot import add_robot, robot_of
 from nl2robot.cli.options.sentence import add_language, add_planner
 from nl2robot.cli.options.values import read_program, whole, words
-from nl2robot.cli.session import Session
+from nl2robot.cli.session import Session, wished
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
@@ -184,16 +184,10 @@ def _in_words(session: Session, sentence: str, options: argparse.Namespace) -> i
     planned = translation.schedule
     if planned is None:
         if translation.program is not None:
-            raise UserError(f"That says no times. Write it so: {EXAMPLE}.")
+            raise UserError(f"That says no times and no event. Write it so: {EXAMPLE}.")
         session.terminal.show_refusal(translation)
         return ExitStatus.NOT_UNDERSTOOD
-    wish = Wish(
-        rhythm=planned.rhythm,
-        when=planned.when,
-        sentence=planned.sentence,
-        plan=planned.plan,
-        more=_more(options),
-    )
+    wish = msgspec.structs.replace(wished(planned), more=_more(options))
     return session.make_appointment(wish, planned.translation)
 
 
