@@ -18,6 +18,7 @@ from nl2robot.schedule.appointments import Appointment
 from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.schedule import Listed
 from nl2robot.schedule.triggers import Trigger
+from nl2robot.schedule.wire import Happens
 from nl2robot.translate.outcome import Translation
 from nl2robot.translate.thinking import EVENT, OnProgress, Progress
 from robot_api.client import Robot
@@ -55,7 +56,18 @@ def _continuing(run: int | None) -> dict[str, int]:
 
 # Learned before there are threads, see `robot_api.schema`.
 msgspec.json.Decoder(
-    tuple[Translation, Review, Approval, Status, Sentence, Left, Appointment, Listed, Proposal]
+    tuple[
+        Translation,
+        Review,
+        Approval,
+        Status,
+        Sentence,
+        Left,
+        Appointment,
+        Listed,
+        Proposal,
+        Happens,
+    ]
 )
 
 
@@ -207,6 +219,13 @@ class Operator:
         }
         number = self._request("schedule.add", parameters, Appointment).id
         return next(each for each in self.appointments(language) if each.appointment.id == number)
+
+    def happens(self, trigger: Trigger, language: str = "en") -> tuple[Trigger, str]:
+        """The event as this robot would keep it, and what it is in words. Raises `InvalidCall` for
+        one that it would never notice."""
+        about = {"trigger": msgspec.to_builtins(trigger), "language": language}
+        found = self._request("schedule.event", about, Happens)
+        return found.trigger, found.when
 
     def appointments(self, language: str = "en") -> list[Listed]:
         """Those of this robot."""

@@ -414,6 +414,15 @@ class Book:
             )
         )
 
+    def how_often(self, appointment: int, until: float) -> tuple[int, float | None]:
+        """How many times it came until then, and when last; without those that were called off."""
+        [row] = self._read(
+            "SELECT COUNT(*) AS came, MAX(due) AS last FROM occurrences"
+            " WHERE appointment = ? AND due <= ? AND state != 'skipped'",
+            *(appointment, until),
+        )
+        return row["came"], row["last"]
+
     # --- forgetting
 
     def forget(self, before: float) -> None:

@@ -84,6 +84,11 @@ class Lookout:
         watch = self._watch
         return watch.buttons() if watch is not None else []
 
+    def rests(self, button: str) -> bool:
+        """Whether a press of this button would begin nothing yet."""
+        watch = self._watch
+        return watch is not None and watch.rests(button, self._clock())
+
     def look(self, book: Book, appointments: list[Appointment], free: bool, charging: bool) -> None:
         """Write down what is due by what came since the last look. `free`: the robot does nothing,
         so it may be asked what it sees; `charging`: it stands at its charger."""

@@ -71,6 +71,10 @@ class Listed(msgspec.Struct, frozen=True, kw_only=True):
     """The times to come that were called off."""
     state: str
     """Of the last time that came, "" if none did; see `nl2robot.schedule.appointments.State`."""
+    last: float | None
+    """When it came last, None if it never did, or so long ago that the book has forgotten it."""
+    came: int
+    """How many times it came, as far back as the book goes; without those that were called off."""
 
 
 class Came(msgspec.Struct, frozen=True, kw_only=True):
@@ -106,7 +110,7 @@ class Schedule:
         self._file = file
         self._robot = robot
         self._check = check
-        self._noticed = noticed
+        self.noticed = noticed
         self.clock = clock
         self._book: Book | None = None
         self._lock = threading.Lock()
@@ -159,7 +163,7 @@ class Schedule:
             if next_time(rhythm, now) is None:
                 raise UserError("That time is over. Choose one that is still to come.")
         if trigger is not None:
-            trigger = self._noticed(trigger)
+            trigger = self.noticed(trigger)
         if not PRIORITIES[0] <= priority <= PRIORITIES[1]:
             raise UserError(f"A priority is {PRIORITIES[0]} to {PRIORITIES[1]}. Choose another.")
         if not 0 <= makes_up <= MAKES_UP_AT_MOST:
@@ -360,6 +364,7 @@ class Schedule:
                     SHOWN,
                 )
             )
+        came, last = book.how_often(kept.id, now)
         latest = [each for each in book.history(kept.id, SHOWN + len(off)) if each.due not in off]
         return Listed(
             appointment=kept,
@@ -368,6 +373,8 @@ class Schedule:
             due=next_time(kept.rhythm, now) if kept.rhythm is not None else None,
             off=tuple(off),
             state=latest[0].state if latest else "",
+            last=last,
+            came=came,
         )
 
     def _next_due(self, book: Book, kept: Appointment) -> list[float]:

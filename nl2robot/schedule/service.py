@@ -8,6 +8,7 @@ process which takes the place of one that was killed can tell it, too.
 from __future__ import annotations
 
 import logging
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -40,6 +41,8 @@ RESTS_AFTER_STOP: Final = 120.0
 """Seconds after somebody has stopped the robot in which nothing begins by itself."""
 CHARGED: Final = 30.0
 """Percent below which a robot that charges goes on charging."""
+PRESSED_EVERY: Final = 1.0
+"""Seconds in which one press of a button counts, however often it is pressed."""
 TRIES_AGAIN: Final = 30.0
 """Seconds after which it is tried again where something was not free after all."""
 FORGETS_EVERY: Final = 3600.0
@@ -48,11 +51,13 @@ LATEST_RUNS: Final = 200
 EVENTS: Final[Mapping[str, str]] = {
     "schedule": "open (what waits, begins or runs now, as schedule.history tells it): something in"
     " the book of appointments has changed; schedule.list tells all of it",
+    "schedule.buttons": "buttons: those that the robot's face shows now, as the method of this name"
+    " lists them",
     "notice": "id, time, kind (missed | missed_many | overtaken | waits | ends_soon | ended |"
-    " changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away |"
-    " reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once),"
-    " occurrence, parts, told (the sentence by language): what somebody has to know who was not"
-    " looking",
+    " changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent |"
+    " reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had"
+    " said at once), occurrence, parts, told (the sentence by language): what somebody has to know"
+    " who was not looking",
 }
 
 _log = logging.getLogger(__name__)
@@ -119,6 +124,10 @@ class Timekeeper:
         """By the monotonic clock."""
         self._version: object = None
         self._trouble = ""
+        self._buttons: list[str] = []
+        """Those that were told of last."""
+        self._pressed: dict[str, float] = {}
+        """When each was pressed last."""
         self._forgot: float | None = None
         self._last_run: int | None = None
         """The run that was looked at when it had ended."""
@@ -143,6 +152,17 @@ class Timekeeper:
         """Those that the robot's face shows, each of which is a trigger."""
         return self._lookout.buttons
 
+    def press(self, button: str) -> bool:
+        """Somebody presses one of them. Whether that counts: not if it was pressed lately."""
+        now = self._timing.clock()
+        if 0 <= now - self._pressed.get(button, -math.inf) < PRESSED_EVERY:
+            return False
+        self._pressed[button] = now
+        if self._lookout.rests(button):
+            return False
+        self.note("pressed", {"button": button})
+        return True
+
     def look(self) -> None:
         """Look once: tell what came of what was begun, and begin what is due."""
         reminded = self._ended_at_once()
@@ -159,6 +179,10 @@ class Timekeeper:
             self._follow(self._clerk, book, occurrence, appointment)
         free, charging = self._waits() is None, self._runner.present.state.charging
         self._lookout.look(book, book.appointments(robot), free, charging)
+        if self._lookout.buttons != self._buttons:
+            self._buttons = self._lookout.buttons
+            self._pressed = {each: at for each, at in self._pressed.items() if each in self._buttons}
+            self._publish("schedule.buttons", {"buttons": self._buttons})
         begin = self._clerk.look(self._timing.clock(), self._waits())
         self._tell(book)
         if begin is not None:

@@ -185,6 +185,11 @@ class Watch:
         named = [each.text for each in self._triggers.values() if each.what == "pressed"]
         return list(dict.fromkeys(named))
 
+    def rests(self, button: str, now: float) -> bool:
+        """Whether a press of this button would begin nothing yet: it was pressed lately."""
+        its = [n for n, each in self._triggers.items() if is_button(each, button)]
+        return bool(its) and not any(self._may(n, self._triggers[n], now) for n in its)
+
     def happened(self, kind: str, data: Mapping[str, Any], now: float) -> list[int]:
         """Something has happened, an event of the wire or one of these: `seen` (thing, there),
         `scanned` (code), `pressed` (button), `message` (topic, text). Returns what is due."""
@@ -221,7 +226,7 @@ class Watch:
             case "scanned", "scanned":
                 return trigger.text in ("", data["code"])
             case "pressed", "pressed":
-                return bool(data["button"] == trigger.text)
+                return is_button(trigger, data["button"])
             case "message", "message":
                 return matches(trigger.topic, data["topic"]) and trigger.text in ("", data["text"])
         return False
@@ -249,6 +254,11 @@ class Watch:
             return False
         before = self._seen.get(trigger.thing)
         return before is None or not 0 <= now - before < GONE_AFTER
+
+
+def is_button(trigger: Trigger, name: str) -> bool:
+    """Whether a press of the button of this name begins it."""
+    return trigger.what == "pressed" and trigger.text == name
 
 
 def _words(text: str) -> str:

@@ -14,6 +14,7 @@ from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES, Appoint
 from nl2robot.schedule.reminders import Reminder, reminders
 from nl2robot.schedule.rhythm import LONGEST_RULE, BadRhythm, Rhythm
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
+from nl2robot.schedule.telling import happening
 from nl2robot.schedule.triggers import LONGEST, SHORTEST, Trigger, What
 from nl2robot.schedule.week import Week, week_of
 from nl2robot.wire import an_object, service
@@ -55,13 +56,21 @@ _TRIGGER: Final = {
 }
 
 
+class Happens(msgspec.Struct, frozen=True):
+    """An event that may begin a program."""
+
+    trigger: Trigger
+    when: str
+    """In words."""
+
+
 class Face(Protocol):
     """Whose buttons are triggers, see `nl2robot.schedule.service.Timekeeper`."""
 
     @property
     def buttons(self) -> list[str]: ...
 
-    def note(self, kind: str, data: Mapping[str, Any]) -> None: ...
+    def press(self, button: str) -> bool: ...
 
 
 def schedule_services(
@@ -69,10 +78,14 @@ def schedule_services(
 ) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`; `log` is for the reminders."""
 
-    def pressed(p: Mapping[str, Any]) -> None:
+    def pressed(p: Mapping[str, Any]) -> bool:
         if face is None or p["button"] not in face.buttons:
             raise UserError("There is no such button any more. Load the page anew.")
-        face.note("pressed", {"button": p["button"]})
+        return face.press(p["button"])
+
+    def happens(p: Mapping[str, Any]) -> Happens:
+        trigger = schedule.noticed(msgspec.convert(p["trigger"], Trigger))
+        return Happens(trigger, happening(trigger, p.get("language", "en")))
 
     def added(p: Mapping[str, Any]) -> Appointment:
         given = dict(p)
@@ -184,11 +197,21 @@ def schedule_services(
         ),
         "schedule.press": service(
             pressed,
-            "Somebody presses one of `schedule.buttons`.",
+            "Somebody presses one of `schedule.buttons`. Tells whether that counts: not if it was"
+            " pressed lately.",
             {"button": _TEXT},
             "button",
             right="face",
-            result=None,
+            result=bool,
+        ),
+        "schedule.event": service(
+            happens,
+            "Tell how an event that shall begin a program is kept: its place by the name that it"
+            " has in this house, and what it is in words. Refuses what this robot would never"
+            " notice. Nothing is planned.",
+            {"trigger": {**_TRIGGER, "type": "object"}, "language": _LANGUAGE},
+            "trigger",
+            result=Happens,
         ),
         "schedule.history": service(
             lambda p: schedule.history(p.get("id"), p.get("last", 100), p.get("language", "en")),

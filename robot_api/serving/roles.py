@@ -36,6 +36,7 @@ TOLD_TO_FACES: Final = frozenset(
     {
         *("face", "face.act", "call.signal", "call.state", "sound", "silence"),
         *("link", "stopping", "stopped", "stop_not_confirmed"),
+        "schedule.buttons",
     }
 )
 """The events that whoever may not look is told of: a tablet stands where visitors are."""

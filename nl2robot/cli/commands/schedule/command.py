@@ -27,7 +27,6 @@ from nl2robot.review.review import Review
 from nl2robot.schedule.appointments import MAKES_UP_AT_MOST, PRIORITIES
 from nl2robot.schedule.rhythm import local, next_begin
 from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
-from nl2robot.schedule.telling import happening
 from nl2robot.schedule.triggers import WRITTEN, written
 from nl2robot.schedule.words import in_words
 from nl2robot.station.robots import Chosen
@@ -157,7 +156,7 @@ def _add(options: argparse.Namespace, robot: Chosen) -> int:
         if not by_options:
             return _in_words(session, " ".join(said), options)
         wish = Wish(
-            **_times(options, now),
+            **_times(session, options, now),
             sentence=" ".join(said) or str(options.program),
             more=_more(options),
         )
@@ -170,11 +169,12 @@ def _add(options: argparse.Namespace, robot: Chosen) -> int:
         return session.make_appointment(wish, translation)
 
 
-def _times(options: argparse.Namespace, now: datetime) -> dict[str, Any]:
-    """At what times, or at what event, as the options say; and in words."""
+def _times(session: Session, options: argparse.Namespace, now: datetime) -> dict[str, Any]:
+    """At what times, or at what event, as the options say; and in words. What the robot would never
+    notice is refused here, before anybody reviews anything."""
     if options.when is not None:
-        trigger = written(options.when)
-        return {"trigger": trigger, "when": happening(trigger, options.lang)}
+        trigger, when = session.operator.happens(written(options.when), options.lang)
+        return {"trigger": trigger, "when": when}
     rhythm = rhythm_of_options(options.at, options.every, options.until, local_zone(), now)
     return {"rhythm": rhythm, "when": in_words(rhythm, options.lang)}
 
