@@ -398,7 +398,9 @@ def _open(
     talks = Talks()
     proposals = Proposals(runner, publish)
     attention = Attention()
-    microphones = Microphones(lambda: runner.knowledge, talks.of, give_way, publish, runner.think)
+    microphones = Microphones(
+        lambda: runner.knowledge, talks.of, give_way, publish, runner.think, schedule
+    )
     backstage = Backstage(
         driver=driver,
         runner=runner,
@@ -411,6 +413,7 @@ def _open(
         camera=driver.camera if isinstance(driver, ComposedDriver) else None,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),
+        schedule=schedule,
         stop=lambda because: server.stop(because),
     )
 

@@ -37,6 +37,13 @@ class Scheduled(msgspec.Struct, frozen=True, kw_only=True):
     own: tuple[str, ...] = ()
 
     @property
+    def asked(self) -> dict[str, Any]:
+        """At what times or what event, and in words, as plain data for a page."""
+        about = {"when": self.when, "rhythm": self.rhythm, "trigger": self.trigger}
+        data: dict[str, Any] = msgspec.to_builtins(about)
+        return data
+
+    @property
     def translation(self) -> Translation:
         """What is done each time."""
         return Translation(

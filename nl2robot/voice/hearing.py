@@ -19,6 +19,7 @@ from grammar.planning.rules import NAME as RULES
 from grammar.samples import all_samples
 from grammar.vocabulary import vocabulary
 from nl2robot.knowledge import Knowledge
+from nl2robot.schedule.schedule import Schedule
 from nl2robot.speech.audio import RATE, Audio, read
 from nl2robot.speech.hear.listening import COMMANDS, Listener, Manner, has_speech
 from nl2robot.speech.hear.recogniser import Decoding, Heard, choose, load
@@ -169,9 +170,11 @@ class Ear:
         planner: str = AUTO,
         talk: Talk | None = None,
         watch: Watch | None = None,
+        schedule: Schedule | None = None,
     ) -> Translation:
         """The program for what was heard; nothing, and a question back, if that is in doubt. A
         language model is asked only about what surely was said: it makes sense of anything.
+        `schedule` knows the appointments.
         Raises `grammar.planning.planner.Interrupted` when `watch` has ended it."""
         if heard.doubtful or not heard.text:
             translation = self._by_rules(heard.text)
@@ -184,6 +187,7 @@ class Ear:
                 talk,
                 watch=watch,
                 do=self._think,
+                schedule=schedule,
             )
         phrase = load_language(self.language).phrase
         if not heard.text:

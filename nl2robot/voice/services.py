@@ -23,6 +23,7 @@ import msgspec
 
 from grammar.planning.planner import Interrupted
 from nl2robot.knowledge import Knowledge
+from nl2robot.schedule.schedule import Schedule
 from nl2robot.models.catalogue import need
 from nl2robot.speech.audio import Converter
 from nl2robot.speech.hear.listening import (
@@ -113,9 +114,11 @@ class Microphones:
         give_way: Callable[[], None] = SILENT.give_way,
         publish: Publish | None = None,
         think: Do = here,
+        schedule: Schedule | None = None,
     ) -> None:
         """`give_way` ends what the robot is saying. `publish` tells a microphone's client how far a
-        language model is with what they said."""
+        language model is with what they said. `schedule` knows the appointments."""
+        self._schedule = schedule
         self._think = think
         self._give_way = give_way
         self._publish = publish
@@ -274,7 +277,9 @@ class Microphones:
         about = {"talk": opened.talk, "utterance": heard.text, "microphone": opened.number}
         talk = self._talk_of(opened.talk).copy()
         thought = Thought(
-            lambda watch: opened.ear.translate(heard, talk=talk, watch=watch),
+            lambda watch: opened.ear.translate(
+                heard, talk=talk, watch=watch, schedule=self._schedule
+            ),
             published(lambda kind, data: self._tell(opened.connection, kind, data), about),
         )
         spoken = _Spoken(heard, stop, thought, talk, opened.connection)

@@ -228,6 +228,7 @@ class Dialogue:
                 runner,
                 thought.watch,
                 runner.think,
+                self._backstage.schedule,
             )
         except Interrupted:
             return None

@@ -1,6 +1,7 @@
 /** The page on the robot's tablet: the face, what the robot shows and asks, STOP, the languages. */
 
 import {mountCall} from '/static/face/call.js';
+import {Buttons} from '/static/face/buttons.js';
 import {Content} from '/static/face/content.js';
 import {drawFace} from '/static/face/drawing.js';
 import {element, filled, pageData, timeOfDay} from '/static/page.js';
@@ -15,7 +16,7 @@ const NOTICE_FOR = 6000;
 
 const {languages, role} = pageData;
 const at = Object.fromEntries(
-  ['stop', 'alarm', 'notice', 'languages', 'fullscreen', 'figure', 'content', 'caption', 'call'].map((id) => [
+  ['stop', 'alarm', 'notice', 'languages', 'fullscreen', 'figure', 'content', 'caption', 'buttons', 'call'].map((id) => [
     id,
     document.getElementById(id),
   ]),
@@ -50,6 +51,13 @@ const content = new Content(at.content, {
   site: () => wire.request('face.site'),
   stop,
 });
+const buttons = operates
+  ? new Buttons(at.buttons, {
+      wire,
+      pressed: (counts) => notice(counts ? words.pressed : words.pressed_lately),
+      failed: notice,
+    })
+  : null;
 const calls = operates ? mountCall(at.call, {wire, words, role: 'face'}) : null;
 
 /** Draw everything as the state has it. */
@@ -90,6 +98,7 @@ function showLanguage() {
   document.title = words.title;
   at.stop.textContent = words.stop;
   at.languages.setAttribute('aria-label', words.languages);
+  at.buttons.setAttribute('aria-label', words.buttons);
   at.fullscreen.setAttribute('aria-label', words.fullscreen);
   for (const button of at.languages.children) {
     button.setAttribute('aria-pressed', button.dataset.code === state.language);
@@ -172,6 +181,7 @@ async function here() {
     const changes = early ?? [];
     early = null;
     for (const change of changes) apply(change);
+    await buttons?.fetch();
     show();
     document.body.dataset.ready = 'yes';
   } catch (error) {

@@ -1,6 +1,7 @@
 /** All appointments as cards: what each is, when it comes next, and what can be done with it. */
 
 import {element, filled} from '/static/page.js';
+import {howOften} from '/static/schedule/events.js';
 import {reviewPanel} from '/static/schedule/review.js';
 import {datesIn, dayAfter} from '/static/schedule/days.js';
 
@@ -56,7 +57,8 @@ export class Appointments {
     asked.querySelector('h3').focus({preventScroll: true});
   }
 
-  card({appointment: kept, when, next, off}) {
+  card(listed) {
+    const {appointment: kept, when, next, off} = listed;
     const {words} = this;
     const chips = [];
     if (kept.asked) {
@@ -64,11 +66,13 @@ export class Appointments {
     }
     if (kept.paused) chips.push(element('span', {class: 'chip'}, words.paused));
     const facts = [
-      [words.next, next.length ? this.moment(next[0]) : words.no_next],
+      kept.trigger
+        ? [words.last, howOften(listed, words, (seconds) => this.moment(seconds))]
+        : [words.next, next.length ? this.moment(next[0]) : words.no_next],
       [words.approved, filled(words.approved_by, {who: kept.approved_by, date: this.date(kept.approved_until)})],
       [words.robot, kept.robot],
       [words.priority, String(kept.priority)],
-      [words.if_missed, kept.makes_up ? filled(words.made_up, {minutes: kept.makes_up}) : words.left_out],
+      [kept.trigger ? words.form_waits : words.if_missed, kept.makes_up ? filled(words.made_up, {minutes: kept.makes_up}) : words.left_out],
     ];
     const list = element('dl', {class: 'facts'});
     for (const [name, told] of facts) list.append(element('dt', {}, name), element('dd', {}, told));
@@ -110,6 +114,15 @@ export class Appointments {
   }
 
   // --- what is done
+
+  /** What a button of its card does, asked for elsewhere on the page. */
+  actOn(number, act) {
+    const card = document.getElementById(`appointment-${number}`);
+    const button = card?.querySelector(`button[data-act=${act}]`);
+    if (!button) return undefined;
+    if (button.hasAttribute('aria-expanded')) card.scrollIntoView({block: 'center'});
+    return this.act(card, button);
+  }
 
   async act(card, button) {
     const {act} = button.dataset;

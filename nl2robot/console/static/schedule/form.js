@@ -1,7 +1,8 @@
-/** Asks at what times a reviewed program is to be done, and has it approved for them. */
+/** Asks at what times, or at what event, a reviewed program is to be done, and has it approved for that. */
 
 import {element, filled} from '/static/page.js';
 import {datesIn, dayAfter, endOf} from '/static/schedule/days.js';
+import {EVENTS, EventFields} from '/static/schedule/event_fields.js';
 
 const HOLDS = 30; // days
 const KINDS = ['once', 'daily', 'weekdays', 'chosen', 'passing'];
@@ -10,14 +11,19 @@ const A_MONDAY = '2026-11-30';
 const PRIORITIES = {first: 7, in_turn: 5, last: 3};
 const MAKES_UP = [30, 60, 120, 720]; // minutes
 const LONGEST_SENTENCE = 2000;
+const OF_EVENTS = ['said', ...EVENTS].map((kind) => `event-${kind}`).join(' ');
 
 /**
  * Resolves to {appointment, when} once there is an appointment, to null if nobody wanted one.
- * `what`: program, sha256, sentence, insists, and times {when, rhythm} if some were said.
+ * `what`: program, sha256, sentence, insists, and times {when, rhythm} or {when, trigger} if some were said.
  */
 export async function askForTimes({wire, words, language, who, what}) {
-  const {zone, today, at} = await wire.request('schedule.week', {language});
-  const asked = new Form({wire, words, language, who, what, zone, today, at});
+  const [{zone, today, at}, named] = await Promise.all([
+    wire.request('schedule.week', {language}),
+    wire.request('places.list').catch(() => []), // a robot whose places nobody knows
+  ]);
+  const places = named.map(({name}) => name);
+  const asked = new Form({wire, words, language, who, what, zone, today, at, places});
   document.body.append(asked.dialog);
   asked.dialog.showModal();
   asked.form.querySelector('select, input').focus();
@@ -49,11 +55,16 @@ class Form {
   }
 
   build() {
-    const {words, what, today, at} = this;
+    const {words, what, today, at, places} = this;
+    const said = what.times;
+    const modes = ['times', 'event'].map((mode) => element('option', {value: mode}, words[`form_mode_${mode}`]));
+    this.mode = element('select', {class: 'field', name: 'mode'}, ...modes);
+    if (said?.trigger) this.mode.value = 'event';
+    this.event = new EventFields({words, places, said: said?.trigger ? said : null});
     const kinds = KINDS.map((kind) => element('option', {value: kind}, words[`form_${kind}`]));
-    if (what.times) kinds.unshift(element('option', {value: 'said'}, filled(words.form_said, what.times)));
+    if (said?.rhythm) kinds.unshift(element('option', {value: 'said'}, filled(words.form_said, said)));
     this.kind = element('select', {class: 'field', name: 'kind'}, ...kinds);
-    if (!what.times) this.kind.value = 'daily';
+    if (!said?.rhythm) this.kind.value = 'daily';
     const hour = String((Number(at.slice(0, 2)) + 1) % 24).padStart(2, '0');
     const date = (value) => element('input', {type: 'date', class: 'field', value, min: today, required: true});
     const time = (value) => element('input', {type: 'time', class: 'field', value, required: true});
@@ -76,17 +87,23 @@ class Form {
     cancel.addEventListener('click', () => this.dialog.close());
     const label = (text, field, kind = '') => element('label', {'data-for': kind}, text, field);
     const boxes = this.days.map((box, index) => element('label', {}, box, this.dayName(index, 'short')));
+    const ofTimes = ['said', ...KINDS].join(' ');
+    this.missedLabel = element('span', {});
+    this.title = element('h2', {});
+    this.what_for = element('p', {class: 'muted'});
     this.form.append(
-      element('h2', {}, words.form_title),
-      element('p', {class: 'muted'}, words.form_told),
-      label(words.form_when, this.kind),
+      this.title,
+      this.what_for,
+      label(words.form_begins, this.mode),
+      ...this.event.labels(),
+      label(words.form_when, this.kind, ofTimes),
       label(words.form_day, this.day, 'once'),
       element('fieldset', {'data-for': 'chosen'}, element('legend', {}, words.form_days), element('div', {class: 'row'}, ...boxes)),
       label(words.form_time, this.time, 'once daily weekdays chosen'),
       label(words.form_minutes, this.minutes, 'passing'),
       element('div', {class: 'from-to', 'data-for': 'passing'}, label(words.form_from, this.from), label(words.form_to, this.to)),
-      label(words.form_until, this.until, 'said daily weekdays chosen passing'),
-      label(words.form_missed, this.missed),
+      label(words.form_until, this.until, `said daily weekdays chosen passing ${OF_EVENTS}`),
+      label(this.missedLabel, this.missed),
       label(words.form_priority, this.priority),
       element('label', {}, words.form_sentence, this.sentence, element('small', {class: 'muted'}, words.form_sentence_hint)),
       this.trouble,
@@ -100,10 +117,19 @@ class Form {
 
   /** Only what is asked of this kind of times is there, and has to be filled in. */
   showFields() {
+    const {words} = this;
+    const event = this.mode.value === 'event';
+    const chosen = event ? `event-${this.event.what.value}` : this.kind.value;
+    this.title.textContent = event ? words.form_title_event : words.form_title;
+    this.dialog.setAttribute('aria-label', this.title.textContent);
+    this.what_for.textContent = event ? words.form_told_event : words.form_told;
+    this.button.textContent = event ? words.form_approve_event : words.form_approve;
+    this.missedLabel.textContent = event ? words.form_waits : words.form_missed;
+    this.missed.options[0].textContent = event ? words.form_leave_soon : words.form_leave;
     for (const part of this.form.querySelectorAll('[data-for]')) {
       const kinds = part.dataset.for.split(' ').filter(Boolean);
-      part.hidden = kinds.length > 0 && !kinds.includes(this.kind.value);
-      for (const field of part.querySelectorAll('input')) field.disabled = part.hidden;
+      part.hidden = kinds.length > 0 && !kinds.includes(chosen);
+      for (const field of part.querySelectorAll('input, select')) field.disabled = part.hidden;
     }
   }
 
@@ -137,15 +163,17 @@ class Form {
   async approve() {
     const {what, words, language, wire} = this;
     this.trouble.hidden = true;
-    const rhythm = this.rhythm();
-    if (!rhythm) return;
+    const event = this.mode.value === 'event';
+    const rhythm = event ? null : this.rhythm();
+    if (!event && !rhythm) return;
+    const trigger = event ? this.event.trigger() : null;
     this.button.disabled = true;
     try {
-      if (await this.hasNews(rhythm)) return;
-      const once = this.kind.value === 'once';
+      if (rhythm && (await this.hasNews(rhythm))) return;
+      const once = !event && this.kind.value === 'once';
       const added = await wire.request('schedule.add', {
         program: what.program, sha256: what.sha256, by: this.who, sentence: this.sentence.value.trim(),
-        language, rhythm,
+        language, rhythm, trigger,
         priority: Number(this.priority.value),
         makes_up: Number(this.missed.value),
         until: endOf(once ? dayAfter(this.day.value, 1) : this.until.value, this.zone),

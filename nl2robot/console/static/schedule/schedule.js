@@ -5,6 +5,7 @@ import {notice} from '/static/console.js';
 import {notifies, notify} from '/static/notices.js';
 import {wire} from '/static/wire.js';
 import {Appointments} from '/static/schedule/appointments.js';
+import {showEvents} from '/static/schedule/events.js';
 import {Reminders} from '/static/schedule/reminders.js';
 import {showWeek} from '/static/schedule/week.js';
 import {datesIn, dayAfter} from '/static/schedule/days.js';
@@ -14,6 +15,7 @@ const LOOKS_EVERY = 60_000;
 
 const root = await appears('#schedule');
 const week = element('section', {class: 'card week', 'aria-labelledby': 'week-title'});
+const events = element('section', {class: 'card events', 'aria-labelledby': 'events-title', hidden: true});
 const record = element('section', {class: 'card reminders', 'aria-labelledby': 'reminders-title', hidden: true});
 const all = element('section', {'aria-labelledby': 'all-title'});
 let day = null; // of the week that is shown; null: this one
@@ -41,6 +43,7 @@ function weekHead() {
 
 let shown = null;
 let drawn = '';
+let eventsDrawn = '';
 const head = weekHead();
 const body = element('div', {class: 'week-body'});
 week.append(head.row, body);
@@ -55,6 +58,19 @@ function drawWeek() {
   root.dataset.week = shown.days[0];
 }
 
+function drawEvents(listed) {
+  const happening = listed.filter(({appointment}) => appointment.trigger);
+  const now = JSON.stringify(happening);
+  if (now === eventsDrawn) return;
+  eventsDrawn = now;
+  showEvents(events, happening, {
+    words,
+    moment: (seconds) => appointments.moment(seconds),
+    operates: role === 'operator',
+    act: (number, act) => appointments.actOn(number, act),
+  });
+}
+
 /** Fetch all of it anew, and draw what has changed. */
 async function refresh() {
   const number = (at += 1);
@@ -66,6 +82,7 @@ async function refresh() {
     if (number !== at) return;
     shown = found;
     appointments.show(listed, found);
+    drawEvents(listed);
     const now = JSON.stringify([found, [...appointments.known]]);
     if (now !== drawn) drawWeek();
     drawn = now;
@@ -94,7 +111,7 @@ function notifying() {
 const appointments = new Appointments(all, {wire, words, language, role, who: pageData.who, changed: refresh});
 const reminders = new Reminders(record, {wire, words, language});
 const looksOn = role === 'operator' ? [] : [element('p', {class: 'muted'}, words.looking_on)];
-root.replaceChildren(notifying(), ...looksOn, week, all, record);
+root.replaceChildren(notifying(), ...looksOn, events, week, all, record);
 narrow.addEventListener('change', drawWeek);
 wire.subscribe('schedule', refresh);
 wire.subscribe('notice', refresh);
