@@ -7,7 +7,6 @@ the rules of commands know nothing of these.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
@@ -20,6 +19,7 @@ from grammar.plan import Forever, Plan, RepeatUntil, Text, While
 from grammar.prepared import forget, prepared
 from grammar.requests import Request
 from grammar.tidy import nodes
+from grammar.tokens import Token
 from grammar.understanding import Context
 
 RULE: Final = "standing_order"
@@ -67,7 +67,7 @@ def goes_on(plan: Plan) -> bool:
     return any(isinstance(each, Forever | While | RepeatUntil) for each in nodes(plan.steps))
 
 
-def _runs_on(tree: Node, tokens: tuple) -> bool:  # type: ignore[type-arg]
+def _runs_on(tree: Node, tokens: tuple[Token, ...]) -> bool:
     """Whether it is not certain where the order begins or ends: another sentence follows, or its
     last words may be a message that what happens belongs to."""
     part = tree.parts["sentence"]
@@ -87,9 +87,3 @@ def _last_leaf(part: Leaf | Node) -> Leaf | None:
         return part
     at_end = [each for each in part.parts.values() if each.end == part.end]
     return _last_leaf(at_end[-1]) if at_end else None
-
-
-def told_anew(order: Request) -> Request:
-    """The same order where it was said that it is meant each time."""
-    assert order.happening is not None
-    return replace(order, happening=replace(order.happening, once=False))

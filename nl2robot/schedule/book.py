@@ -406,10 +406,10 @@ class Book:
         ]
 
     def was_told(self, kind: NoticeKind, appointment: int, since: float) -> bool:
-        """Whether such a notice was written from that moment on."""
+        """Whether such a notice was written after that moment."""
         return bool(
             self._read(
-                "SELECT 1 FROM notices WHERE kind = ? AND appointment = ? AND time >= ? LIMIT 1",
+                "SELECT 1 FROM notices WHERE kind = ? AND appointment = ? AND time > ? LIMIT 1",
                 *(kind, appointment, since),
             )
         )

@@ -181,7 +181,9 @@ class Timekeeper:
         self._lookout.look(book, book.appointments(robot), free, charging)
         if self._lookout.buttons != self._buttons:
             self._buttons = self._lookout.buttons
-            self._pressed = {each: at for each, at in self._pressed.items() if each in self._buttons}
+            self._pressed = {
+                each: at for each, at in self._pressed.items() if each in self._buttons
+            }
             self._publish("schedule.buttons", {"buttons": self._buttons})
         begin = self._clerk.look(self._timing.clock(), self._waits())
         self._tell(book)

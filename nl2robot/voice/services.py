@@ -23,8 +23,8 @@ import msgspec
 
 from grammar.planning.planner import Interrupted
 from nl2robot.knowledge import Knowledge
-from nl2robot.schedule.schedule import Schedule
 from nl2robot.models.catalogue import need
+from nl2robot.schedule.schedule import Schedule
 from nl2robot.speech.audio import Converter
 from nl2robot.speech.hear.listening import (
     COMMANDS,

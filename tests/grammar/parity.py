@@ -24,7 +24,10 @@ FIRST: Final = "en"
 NOT_YET: Final = "not yet"
 ALLOWED: Final = Path(__file__).with_name("parity.yaml")
 WORDINGS: Final = frozenset(
-    {"form", "each", "past", "third", "unit", "add", "minute", "more", "number", "value", "phrase"}
+    {
+        *("form", "each", "past", "third", "unit", "add", "minute", "more", "number", "value"),
+        *("phrase", "label"),
+    }
 )
 """Values that are words of a language, or measures that only some people use."""
 
@@ -63,7 +66,7 @@ def _roles(language: str) -> dict[str, set[str]]:
 
 def _reached(rules: Mapping[str, tuple[Production, ...]]) -> list[str]:
     """The rules that a sentence or what is said of one can lead to."""
-    found = ["utterance", *(["edit"] if "edit" in rules else [])]
+    found = [each for each in ("utterance", "edit", "standing_order") if each in rules]
     for name in found:
         for entry in rules[name]:
             for template in entry.templates:

@@ -172,6 +172,7 @@ def test_run_puts_in_the_book_what_is_to_be_done_at_set_times(
         (("add", "say hello", "--at", "8 pm"), ExitStatus.BAD_INPUT, "is no time"),
         (("add", "say hello", "--at", "8:00", "--every", "blue moon"), 2, "is no rhythm"),
         (("add", "say hello", "--when", "fire"), ExitStatus.BAD_INPUT, "There are: battery:20"),
+        (("add", "say hello", "--when", "place:garden"), ExitStatus.BAD_INPUT, "no place “garden”"),
         (
             ("add", "say hello", "--when", "battery:20", "--at", "8:00"),
             ExitStatus.BAD_INPUT,
