@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Literal
 
-from grammar.happenings import Happening
 from grammar.language import load_language
+from grammar.standing_orders.happenings import Happening
 from grammar.tokens import tokenise
 
 Kind = Literal[
@@ -97,7 +97,7 @@ class Request:
     """Of "schedule", what those words say; None if they are not understood. Of "skip" the day, of
     "unschedule" the time of day, if one was said."""
     happening: Happening | None = None
-    """Of "schedule", what it is to be done at instead, each time (`grammar.standing`)."""
+    """Of "schedule", what it is to be done at instead, each time (`grammar.standing_orders`)."""
 
 
 def agreed(text: str, language: str = "en") -> bool | None:

@@ -65,7 +65,6 @@ import grammar.meanings.signatures
 import grammar.meanings.some_places
 import grammar.meanings.sources
 import grammar.meanings.speaking
-import grammar.meanings.standing
 import grammar.meanings.stops
 import grammar.meanings.strangers
 import grammar.meanings.telling_if
@@ -79,4 +78,5 @@ import grammar.meanings.volunteers
 import grammar.meanings.waiting
 import grammar.meanings.when_found
 import grammar.meanings.whereabouts
-import grammar.reminders.reminding  # noqa: F401 (each enters its meanings)
+import grammar.reminders.reminding
+import grammar.standing_orders.meanings  # noqa: F401 (each enters its meanings)

@@ -8,8 +8,8 @@ from typing import Final
 
 import msgspec
 
-from grammar.happenings import Happening
 from grammar.requests import Request
+from grammar.standing_orders.happenings import Happening
 from nl2robot.schedule.triggers import SHORTEST, Trigger, checked
 from nl2robot.texts import texts_in
 from robot_api.capabilities.matching import match_answer

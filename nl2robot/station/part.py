@@ -78,8 +78,6 @@ class Backstage:
     """How others come in; None where nobody but this program does."""
     places: Places | None = None
     """What the driver of a real robot is sent by, if it is: told of places as people name them."""
-    schedule: Schedule | None = None
-    """Its appointments."""
     camera: Camera | None = None
     """The robot's, if people may look through it."""
     schedule: Schedule | None = None

@@ -413,7 +413,6 @@ def _open(
         camera=driver.camera if isinstance(driver, ComposedDriver) else None,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),
-        schedule=schedule,
         stop=lambda because: server.stop(because),
     )
 

@@ -20,7 +20,7 @@ import msgspec
 from grammar.language import UnknownLanguage, load_language
 from grammar.plan import from_data
 from grammar.requests import Request
-from grammar.standing import goes_on, said_of, standing_order
+from grammar.standing_orders.orders import goes_on, said_of, standing_order
 from nl2robot.knowledge import Knowledge
 from nl2robot.schedule.standing import (
     Doubtful,

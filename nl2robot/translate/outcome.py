@@ -89,8 +89,8 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     """What is asked of the application instead of the robot, such as to learn a routine; there
     is no program then, and the message is the answer."""
     schedule: Scheduled | None = None
-    """What is asked to be done at set times or at an event. There is no program to be run now then: this one is
-    reviewed and approved for those times (`schedule.add` on the wire)."""
+    """What is asked to be done at set times or at an event. There is no program to be run now then:
+    this one is reviewed and approved for those times (`schedule.add` on the wire)."""
 
     def to_json(self) -> str:
         return msgspec.json.encode(self).decode()

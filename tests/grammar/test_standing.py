@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from grammar.happenings import Happening
 from grammar.language import load_language
 from grammar.requests import Request
-from grammar.standing import goes_on, said_of, standing_order
+from grammar.standing_orders.happenings import Happening
+from grammar.standing_orders.orders import goes_on, said_of, standing_order
 from grammar.understand import understand
 from tests.grammar.hospitals import hospital
 

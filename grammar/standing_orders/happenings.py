@@ -1,4 +1,4 @@
-"""What may happen and begin something each time, as words say it: "somebody comes into the lobby"."""
+"""What may happen and begin something each time, as words say it: "somebody comes in"."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a standing order is made of: what happens, and how often at most (`grammar.standing`)."""
+"""What a standing order is made of: what happens, and how often at most."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse
 from grammar.errors import NotUnderstood
-from grammar.happenings import Happening
 from grammar.meanings.registry import meaning
 from grammar.meanings.requests import request
 from grammar.plan import Text
 from grammar.requests import Request
+from grammar.standing_orders.happenings import Happening
 
 FULL: Final = 100
 """Percent."""

@@ -1,0 +1,1 @@
+"""Standing orders: what is to be done each time that something happens."""
