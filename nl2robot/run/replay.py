@@ -12,6 +12,7 @@ from __future__ import annotations
 import json
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
+from datetime import datetime
 from typing import Any
 
 import msgspec
@@ -104,8 +105,13 @@ def _put_at_start(run: Run, simulation: Simulation) -> Iterator[str]:
     """Put the robot where it stood; yields what is in the way of that."""
     if run.start is None:  # logged by an older version
         return
+    start = json.loads(run.start)
+    clock = start.pop("clock", None)  # not of runs that an older version logged
+    if clock is not None:
+        zone = simulation.clock().tzinfo
+        simulation.set_clock(datetime.fromisoformat(clock).astimezone(zone))
     try:
-        simulation.localize(**json.loads(run.start))
+        simulation.localize(**start)
     except SimError as error:
         yield f"The robot begins elsewhere this time: {error}"
     simulation.new_record()

@@ -15,6 +15,7 @@ import threading
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,8 @@ CREATE TABLE IF NOT EXISTS runs (
     status TEXT,                     -- done | failed | stopped | limit; NULL while it runs
     message TEXT,
     picture TEXT,                    -- path of the picture of the run
-    start TEXT,                      -- JSON: x, y (metres), theta (degrees) of a simulated robot
+    start TEXT,                      -- JSON: x, y (metres), theta (degrees), clock (ISO 8601;
+                                     -- not of old runs) of a simulated robot
     process INTEGER,                 -- that runs it, see nl2robot/run/process.py
     continues INTEGER,               -- the run with which this one goes on
     proposed TEXT,                   -- the program that was proposed, if somebody changed it
@@ -293,9 +295,10 @@ class RunLog:
             *(time.time(), status, message, run),
         )
 
-    def starts_at(self, run: int, x: float, y: float, theta: float) -> None:
-        """Note where a simulated robot stands when the run begins."""
-        start = msgspec.json.encode({"x": x, "y": y, "theta": theta}).decode()
+    def starts_at(self, run: int, x: float, y: float, theta: float, clock: datetime) -> None:
+        """Note where a simulated robot stands when the run begins, and what its clock shows."""
+        where = {"x": x, "y": y, "theta": theta, "clock": clock}
+        start = msgspec.json.encode(where).decode()
         self._write("UPDATE runs SET start = ? WHERE id = ?", start, run)
 
     def stands_at(self, run: int, pose: str) -> None:

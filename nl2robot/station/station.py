@@ -218,7 +218,7 @@ def simulated_station(
 def _note_start(station: SimulatedStation, log: RunLog, run: int) -> None:
     robot = station.simulation.robot
     with suppress(LogError):  # the first call will find the disk full, too, and stop the run
-        log.starts_at(run, robot.x, robot.y, robot.theta)
+        log.starts_at(run, robot.x, robot.y, robot.theta, station.simulation.clock())
 
 
 def _keep_picture(station: SimulatedStation, log: RunLog, run: int, file: Path) -> None:

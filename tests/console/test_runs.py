@@ -10,6 +10,7 @@ import re
 import sqlite3
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
+from datetime import UTC, datetime
 from html import unescape
 from types import SimpleNamespace
 from typing import Any
@@ -276,7 +277,7 @@ def test_a_movement_comes_with_the_lines_of_the_program(log, client) -> None:
     assert (data["poses"], data["happenings"]) == ([[0, 1, 2, 90]], [[1, "speech", "Hello"]])
     assert [line for _, line in data["lines"]] == [1, 2]
     assert 'id="live"' in client.get(f"/runs/{run}/floor.svg").text
-    log.starts_at(run, 5.0, 6.0, 0.0)
+    log.starts_at(run, 5.0, 6.0, 0.0, datetime(2026, 3, 2, 8, 0, tzinfo=UTC))
     assert client.get(f"/runs/{run}/movement.json").json()["poses"][0] == [0, 5, 6, 0]
     log.keep_movement(run, b"junk", 10)
     assert client.get(f"/runs/{run}/movement.json").status_code == 404

@@ -3,6 +3,7 @@
 import contextlib
 import json
 import sqlite3
+from datetime import datetime
 
 import pytest
 
@@ -51,6 +52,15 @@ def test_a_run_comes_out_the_same(run, log, station) -> None:
     told, simulation = again(log, row)
     assert (told.status, told.message, told.differences) == ("done", None, ())
     assert simulation.robot.place == station.simulation.robot.place
+
+
+def test_it_begins_at_the_time_of_day_of_the_run(run, log, station) -> None:
+    station.simulation.set_clock(datetime(2026, 11, 30, 21, 5))
+    row = run('robot.goto("ward b" if robot.clock().time >= "21:00" else "ward a")\n')
+    told, simulation = again(log, row)
+    assert (told.status, told.differences) == ("done", ())
+    assert simulation.robot.place == "ward b"
+    assert f"{simulation.clock():%Y-%m-%d %H}" == "2026-11-30 21"
 
 
 def test_what_people_said_comes_from_the_log(run, log) -> None:
