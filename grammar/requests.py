@@ -52,14 +52,19 @@ class When:
     it is, so that "tomorrow" is one day ahead, whenever that is."""
 
     times: tuple[str, ...] = ()
-    """Times of day, "HH:MM" of 24 hours, in the order of the day; empty if none was said."""
+    """Times of day, "HH:MM" of 24 hours, as they were said one after the other, each as it is
+    usually meant; empty if none was said."""
+    bare: tuple[str, ...] = ()
+    """Those of them that were said without their half of the day (`grammar.times.bare_hours`)."""
+    half: Literal["am", "pm", "night"] | None = None
+    """The half of the day, where no time was said."""
     weekdays: tuple[int, ...] = ()
     """The days on which, 0 = Monday; empty for any day."""
     days_ahead: int | None = None
-    """How many days from now: today 0, tomorrow 1."""
+    """How many days from now: today 0, tomorrow 1; None if no day was said."""
     date: str | None = None
     """A day, "2026-12-24", or "12-24" where no year was said."""
-    minutes: int | None = None
+    minutes: float | None = None
     """Every so many minutes if it `repeats`, else in so many minutes."""
     repeats: bool = False
     """Whether it is to be done again and again."""
@@ -69,9 +74,6 @@ class When:
     """Each day from this time of day on, "HH:MM" ("from nine to five every hour")."""
     until: str | None = None
     """Each day up to this time of day, "HH:MM"."""
-    unclear: tuple[str, ...] = ()
-    """The times of day that it may be, to be asked back, such as "08:00" and "20:00"; empty if it
-    is clear."""
 
 
 @dataclass(frozen=True)

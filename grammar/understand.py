@@ -8,6 +8,8 @@ the name of a routine stands for is a whole sentence again, so its meaning is en
 
 from __future__ import annotations
 
+import itertools
+from contextlib import suppress
 from dataclasses import replace
 from typing import Final
 
@@ -15,19 +17,22 @@ from grammar import repairs, rewordings
 from grammar.chart import Node, TooMuch
 from grammar.discourse import START, Discourse, Steps
 from grammar.errors import NotUnderstood
-from grammar.language import load_language
+from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon, Routine
 from grammar.meanings.registry import meaning
 from grammar.meanings.requests import with_own_names
 from grammar.plan import Call, Plan, Text
 from grammar.prepared import forget
 from grammar.program_parser import NotAPlan, parse_program
+from grammar.times.said import said_otherwise
 from grammar.tokens import Token
 from grammar.understanding import Clarification, Context, Understanding, rejected
 
 LONGEST_TEXT: Final = 2000
 """Characters."""
 MOST_WORDS: Final = 150
+MOST_TRIED: Final = 3
+"""Ways to put first what says when."""
 
 
 def understand(
@@ -47,7 +52,28 @@ def understand(
         understood = repairs.understood(text, lexicon, pack, context)
     except TooMuch:  # of one way to read it, and there are others that would take as long
         return rejected(text, pack.phrase("too_long"), context)
+    if understood.status == "rejected":
+        understood = _with_its_time_first(text, lexicon, pack, context) or understood
     return _with_quotes(understood, lexicon, language) if understood.quoted else understood
+
+
+def _with_its_time_first(
+    text: str, lexicon: Lexicon, language: Language, context: Context
+) -> Understanding | None:
+    """What says when may stand anywhere; rules know it at the beginning. None if that is not why
+    nothing was understood."""
+    with suppress(TooMuch):
+        ways = said_otherwise(text, lexicon, language, context)
+        for other, asked in itertools.islice(ways, MOST_TRIED):
+            understood = repairs.understood(other, lexicon, language, context)
+            if understood.plan is None:
+                continue
+            if asked is not None:
+                return replace(
+                    understood, utterance=text, plan=None, request=asked, context=context
+                )
+            return replace(understood, utterance=text)
+    return None
 
 
 def _with_quotes(understood: Understanding, lexicon: Lexicon, language: str) -> Understanding:

@@ -3,7 +3,7 @@ among others (`grammar.understand` enters what the name of one means)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import date
 from typing import Any, Final
@@ -14,17 +14,17 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps
 from grammar.errors import NotUnderstood
 from grammar.lexicon import Name, Routine
-from grammar.meanings.amounts import time_said
+from grammar.meanings.amounts import after_midnight, time_meant, time_said
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Plan, Remember, Try
 from grammar.requests import Kind, Request, When
 from grammar.tidy import nodes
+from grammar.times.bare_hours import NIGHT, end_of
 from robot_api.methods import WEEKDAYS
 
 A_MINUTE: Final = 60
 A_LEAP_YEAR: Final = 2028
-_EITHER_HALF: Final = range(6, 9)
-"""What o'clock people say of mornings and of evenings alike, where nothing else tells which."""
+MOST_DAYS_AHEAD: Final = 366
 
 
 def with_own_names(d: Discourse, plan: Plan) -> Steps:
@@ -113,7 +113,12 @@ def forget_routine(d: Discourse, node: Node) -> Request:
 @meaning("schedule_routine")
 def schedule_routine(d: Discourse, node: Node) -> Request:
     asked = request(d, node, "schedule")
-    return replace(asked, when=d.build(node.parts["part"]))
+    part, sentence = node.parts["part"], node.parts["sentence"]
+    if 0 < part.start < sentence.start and d.tokens[part.start - 1].kind != "mark":
+        # "va chaque matin à huit heures à la réception"
+        begin = d.words(0, part.start)
+        asked = replace(asked, sentence=f"{begin} {asked.sentence}")
+    return replace(asked, when=d.build(part))
 
 
 @meaning("skip_appointments")
@@ -163,13 +168,15 @@ def set_times(d: Discourse, node: Node) -> When | None:
     if fixed.get("other"):
         return None
     half = fixed.get("half")
-    since, until = (_window(d, node, each) for each in ("since", "until"))
+    repeats = _part(node, "date") is None and not fixed.get("once")
+    since, until = _window(d, node)
     pace = _part(node, "pace")
     when = When(
         weekdays=_weekdays(d, node, str(fixed.get("weekdays", ""))),
         minutes=int(fixed["minutes"]) if "minutes" in fixed else None,
+        days_ahead=_ahead(d, days, fixed),
         date=_date(d, node),
-        repeats=_part(node, "date") is None and not fixed.get("once"),
+        repeats=repeats,
         since=since,
         until=until,
     )
@@ -180,31 +187,39 @@ def set_times(d: Discourse, node: Node) -> When | None:
         when = replace(when, minutes=int(every))
     if (count := _part(node, "count")) is not None:
         when = replace(when, count=int(d.build(count)))
-    times: set[str] = set()
-    unclear: tuple[str, ...] = ()
+    said: list[tuple[str, bool]] = []
     for each in _named(node, "clock"):
-        time, guessed = time_said(d, each, half)
-        times.add(time)
-        if half is None and not fixed.get("working") and _either(d, each, time, guessed):
-            first = f"{int(time[:2]) % 12:02}{time[2:]}"
-            unclear = (first, f"{int(first[:2]) + 12:02}{time[2:]}")
-    if not times and "at" in fixed:
-        times.add(str(fixed["at"]))
-    return replace(when, times=tuple(sorted(times)), unclear=unclear)
+        time, bare = time_meant(d, each, half, once=not repeats)
+        said.append((time, bare and not fixed.get("working")))
+    if not said and "at" in fixed:
+        said.append((str(fixed["at"]), False))
+    when = replace(
+        when,
+        times=tuple(time for time, _ in said),
+        bare=tuple(dict.fromkeys(time for time, bare in said if bare)),
+    )
+    if not said:
+        when = replace(when, half=half)
+    return after_midnight(when) if half == NIGHT else when
 
 
-def _either(d: Discourse, node: Node, time: str, guessed: bool) -> bool:
-    """Whether that may be in the morning as well as in the evening."""
-    if "time" in node.production.fixed or d.get(node, "half_of_day") or "clock" in node.parts:
-        return False
-    if d.tokens[node.end - 1].norm in d.language.speech.get("whole_day_clock", ()):
-        return False  # "um 8 Uhr": who means the evening says 20
-    return int(time[:2]) % 12 in _EITHER_HALF and (guessed or int(time[:2]) < 12)
+def _ahead(d: Discourse, said: Node | None, fixed: Mapping[str, Any]) -> int | None:
+    """How many days from now, as words say it: "tomorrow", "in three days"."""
+    if said is not None and "number" in said.parts:
+        days = float(d.get(said, "number")) * float(fixed.get("unit", 1))
+        if days != int(days) or not 0 <= days <= MOST_DAYS_AHEAD:
+            words = d.words(said.start, said.end)
+            raise NotUnderstood(d.language.phrase("no_such_time", time=words))
+        return int(days)
+    return int(fixed["ahead"]) if "ahead" in fixed else None
 
 
-def _window(d: Discourse, node: Node, name: str) -> str | None:
-    part = _part(node, name)
-    return time_said(d, part)[0] if part is not None else None
+def _window(d: Discourse, node: Node) -> tuple[str | None, str | None]:
+    first, last = _part(node, "since"), _part(node, "until")
+    since = time_said(d, first)[0] if first is not None else None
+    if last is None:
+        return since, None
+    return since, end_of(since, *time_meant(d, last, once=True))
 
 
 def _date(d: Discourse, node: Node) -> str | None:
@@ -224,12 +239,18 @@ def _date(d: Discourse, node: Node) -> str | None:
 def _weekdays(d: Discourse, node: Node, fixed: str) -> tuple[int, ...]:
     if fixed:
         return tuple(int(day) for day in fixed.split())
-    said = {
+    said = [
         WEEKDAYS.index(d.build(leaf))
         for leaf in _leaves(node)
-        if leaf.slot in ("weekday", "weekdays")
-    }
-    return tuple(sorted(said))
+        if leaf.slot in ("weekday", "weekdays", "weekday_am", "weekday_pm", "weekday_night")
+    ]
+    days = _part(node, "days")
+    if days is not None and days.production.fixed.get("range"):
+        first, last = said
+        said = [
+            (first + each) % len(WEEKDAYS) for each in range((last - first) % len(WEEKDAYS) + 1)
+        ]
+    return tuple(sorted(set(said)))
 
 
 def _leaves(node: Node) -> Iterator[Leaf]:

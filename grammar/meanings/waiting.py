@@ -9,8 +9,6 @@ import msgspec
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.errors import NotUnderstood
-from grammar.meanings.amounts import time_said
 from grammar.meanings.arrivals import may_be_another, names_somebody
 from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
 from grammar.meanings.branches import if_
@@ -49,9 +47,6 @@ from grammar.plan import (
 )
 from grammar.tidy import LOOPS, gives, nodes
 
-MIDNIGHT: Final = "00:00"
-MOST_MIDNIGHTS: Final = 7
-"""That somebody counts who says "in three days at eight"."""
 LOOK_EVERY: Final = 10
 """Seconds between two looks at a condition that is waited for."""
 
@@ -460,26 +455,6 @@ def at_time(d: Discourse, node: Node) -> Steps:
     """Wait until it is that late."""
     time = Compare(Ask("clock", field="time"), ">=", Text(d.get(node, "clock_time")))
     return wait_until(time)
-
-
-@meaning("day_time")
-def day_time(d: Discourse, node: Node) -> Steps:
-    """ "tomorrow at eight", "on Monday at nine", "tonight at ten". A plan knows nothing of the day
-    on which it is carried out: tomorrow begins when midnight has come."""
-    clock = node.parts["clock"]
-    assert isinstance(clock, Node)
-    time, guessed = time_said(d, clock, node.production.fixed.get("half"))
-    if guessed:
-        d.assumptions.append("pm")
-    days = float(d.get(node, "days", 0))
-    if days != int(days) or not 0 <= days <= MOST_MIDNIGHTS:
-        said = d.words(node.start, node.end)
-        raise NotUnderstood(d.language.phrase("no_such_time", time=said))
-    arguments: dict[str, Value] = {"time": Text(time)}
-    if "weekday" in node.parts:
-        arguments["weekday"] = Text(d.get(node, "weekday"))
-    midnight = Call("wait_until", {"time": Text(MIDNIGHT)})
-    return [*[midnight] * int(days), Call("wait_until", arguments)]
 
 
 @meaning("no_later")

@@ -13,39 +13,60 @@ from typing import Final
 import msgspec
 
 from grammar.requests import When
+from grammar.times.bare_hours import A_DAY, Choice, choices, minutes_of
 from nl2robot.schedule.rhythm import NEVER, WEEKDAYS, BadRhythm, Rhythm, checked, local, next_time
 
 _MINUTE: Final = timedelta(minutes=1)
-_A_DAY: Final = 24 * 60
+OTHER_WEEKDAY: Final = "That date is another day of the week. Say only one of the two."
+PAST: Final = "That time is past. Say one that is still to come."
 
 
 class Unclear(msgspec.Struct, frozen=True):
     """It may be at several times of day; without any, no time was said."""
 
-    times: tuple[str, ...]
+    choices: tuple[Choice, ...]
+    """Of each, all times of day that were said, in that reading."""
 
 
-def rhythm_of(when: When, now: float, zone: str, *, time: str | None = None) -> Rhythm | Unclear:
-    """The rhythm that is meant by words said at that moment (seconds since the epoch). `time` is
-    the time of day that was chosen of those it may be, or said afterwards. Raises `BadRhythm`."""
-    if time is not None:
-        when = replace(when, times=(time,), unclear=())
-    if when.unclear:
-        return Unclear(when.unclear)
+def rhythm_of(
+    when: When, now: float, zone: str, *, times: Choice | None = None
+) -> Rhythm | Unclear:
+    """The rhythm that is meant by words said at that moment (seconds since the epoch). `times` are
+    those of day that were chosen of what it may be, or said afterwards. Raises `BadRhythm`."""
     here = local(now, zone).replace(tzinfo=None, second=0, microsecond=0)
+    if times is not None:
+        when = replace(when, times=times, bare=())
+    found = _choices(when, here)
+    if len(found) > 1:
+        return Unclear(found)
+    when = replace(when, times=tuple(sorted(set(found[0]))))
     if when.minutes is not None and not when.repeats:
-        return checked(Rhythm(here + _MINUTE * (when.minutes + 1), zone))
+        exactly = local(now + when.minutes * 60 - 1e-6, zone).replace(tzinfo=None)
+        return checked(Rhythm(exactly.replace(second=0, microsecond=0) + _MINUTE, zone))
     day = _first_day(when, here)
     if when.minutes is not None:
         return checked(_every(when, day, here, now, zone))
     if not when.times:
         return Unclear(())
-    if not when.repeats and len(when.times) == 1:
-        return checked(Rhythm(_once(when, day, here), zone))
-    parts = ["FREQ=DAILY", *_days(when), *_of_day([_minutes(each) for each in when.times])]
     if not when.repeats:
-        parts += [f"COUNT={len(when.times)}"]
+        return checked(_once(when, day, here, zone))
+    parts = ["FREQ=DAILY", *_days(when), *_of_day([minutes_of(each) for each in when.times])]
     return checked(_counted(when, Rhythm(day, zone, ";".join(parts)), now))
+
+
+def first_time(when: When, now: float, zone: str) -> float | None:
+    """When that is for the first time, in seconds since the epoch; None where it is to be asked
+    first. Raises `BadRhythm`."""
+    found = rhythm_of(when, now, zone)
+    return next_time(found, now) if isinstance(found, Rhythm) else None
+
+
+def _choices(when: When, here: datetime) -> tuple[Choice, ...]:
+    """The times of day that may be meant. What time it is now tells of today only."""
+    today = when.days_ahead == 0
+    once_today = not when.repeats and not when.weekdays and when.date is None
+    now = f"{here:%H:%M}" if once_today and (today or when.days_ahead is None) else None
+    return choices(when.times, when.bare, now, today)
 
 
 def _first_day(when: When, here: datetime) -> datetime:
@@ -54,7 +75,10 @@ def _first_day(when: When, here: datetime) -> datetime:
     if when.days_ahead is not None:
         return today + timedelta(days=when.days_ahead)
     if when.date is not None:
-        return _date(when.date, today)
+        day = _date(when.date, today)
+        if when.weekdays and day.weekday() not in when.weekdays:
+            raise BadRhythm(OTHER_WEEKDAY)
+        return day
     if when.weekdays and not when.repeats:
         ahead = min((day - today.weekday()) % 7 for day in when.weekdays)
         return today + timedelta(days=ahead)
@@ -82,14 +106,25 @@ def _day_of(written: str) -> datetime | None:
         return None
 
 
-def _once(when: When, day: datetime, here: datetime) -> datetime:
-    """The next such time of day, if no day was said."""
-    at = day + _MINUTE * _minutes(when.times[0])
-    if at > here:
-        return at
-    if when.weekdays:
-        return at + timedelta(days=7)
-    return at + timedelta(days=1) if when.days_ahead is None and when.date is None else at
+def _once(when: When, day: datetime, here: datetime, zone: str) -> Rhythm:
+    """Once at each such time of day, the next that there are if no day was said. Of a day that was
+    said, what is past is left out; raises `BadRhythm` if that is all of it."""
+    said = [day + _MINUTE * minutes_of(each) for each in when.times]
+    open_day = when.days_ahead is None and when.date is None
+    if open_day and when.weekdays:
+        moments = said if said[-1] > here else [each + timedelta(days=7) for each in said]
+    elif open_day:
+        moments = sorted(each if each > here else each + timedelta(days=1) for each in said)
+    else:
+        moments = said
+    to_come = [each for each in moments if each > here]
+    if not to_come:
+        raise BadRhythm(PAST)
+    first = to_come[0]
+    if len(to_come) == 1:
+        return Rhythm(first, zone)
+    parts = ["FREQ=DAILY", *_of_day(sorted(minutes_of(f"{each:%H:%M}") for each in to_come))]
+    return Rhythm(first, zone, ";".join([*parts, f"COUNT={len(to_come)}"]))
 
 
 def _every(when: When, day: datetime, here: datetime, now: float, zone: str) -> Rhythm:
@@ -98,12 +133,12 @@ def _every(when: When, day: datetime, here: datetime, now: float, zone: str) -> 
     if when.since is None and when.until is None and not when.weekdays:
         begins = here + _MINUTE if day <= here else day
         count = f";COUNT={when.count}" if when.count else ""
-        return Rhythm(begins, zone, f"FREQ=MINUTELY;INTERVAL={when.minutes}{count}")
-    first = _minutes(when.since) if when.since else 0
-    last = _minutes(when.until) if when.until else _A_DAY - 1
+        return Rhythm(begins, zone, f"FREQ=MINUTELY;INTERVAL={int(when.minutes)}{count}")
+    first = minutes_of(when.since) if when.since else 0
+    last = minutes_of(when.until) if when.until else A_DAY - 1
     if last < first:
-        last += _A_DAY  # over midnight
-    moments = sorted({each % _A_DAY for each in range(first, last + 1, when.minutes)})
+        last += A_DAY  # over midnight
+    moments = sorted({each % A_DAY for each in range(first, last + 1, int(when.minutes))})
     parts = ["FREQ=DAILY", *_days(when), *_of_day(moments)]
     return _counted(when, Rhythm(day, zone, ";".join(parts)), now)
 
@@ -133,8 +168,3 @@ def _of_day(minutes: Sequence[int]) -> Iterator[str]:
     if len(whole) > len(minutes):
         places = (str(place) for place, each in enumerate(whole, 1) if each in minutes)
         yield f"BYSETPOS={','.join(places)}"
-
-
-def _minutes(time: str) -> int:
-    hour, _, minute = time.partition(":")
-    return int(hour) * 60 + int(minute)

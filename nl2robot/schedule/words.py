@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import datetime
+from datetime import date, datetime
 from typing import Any, Final, Literal
 
-from nl2robot.schedule.rhythm import WEEKDAYS, Rhythm, local, parts_of
+from grammar.times.bare_hours import A_DAY, minutes_of
+from nl2robot.schedule.rhythm import WEEKDAYS, Rhythm, local, parts_of, times
 from nl2robot.texts import texts_in
 
 _A_ROW: Final = 4
@@ -26,15 +27,18 @@ _KNOWN: Final[Mapping[str, set[str]]] = {
 """What there are words for; the rest is told as the rule that it is."""
 
 
-def in_words(rhythm: Rhythm, language: str = "en") -> str:
-    """A checked rhythm as a nurse says it, without a full stop."""
+def in_words(rhythm: Rhythm, language: str = "en", now: float | None = None) -> str:
+    """A checked rhythm as a nurse says it, without a full stop. Seen from `now` (seconds since the
+    epoch) today is told as today, and tomorrow as tomorrow."""
     texts = texts_in(language, "schedules")
-    begins = rhythm.begins
     if rhythm.rule is None:
-        return str(texts["once"]).format(
-            date=on_date(begins, language), time=_at([f"{begins:%H:%M}"], texts)
-        )
+        return str(texts["once"]).format(moments=_moments([rhythm.begins], rhythm, language, now))
     parts = parts_of(rhythm.rule)
+    if "COUNT" in parts and parts["FREQ"] == "DAILY" and "BYDAY" not in parts:
+        pairs = len(list(_times(rhythm, parts)))
+        if 1 < pairs >= int(parts["COUNT"]):  # not a rhythm, but some times of a day or two
+            listed = [local(each, rhythm.zone) for each in times(rhythm)]
+            return str(texts["once"]).format(moments=_moments(listed, rhythm, language, now))
     told = _told(rhythm, parts, texts)
     if "COUNT" in parts:
         number = int(parts["COUNT"])
@@ -43,6 +47,38 @@ def in_words(rhythm: Rhythm, language: str = "en") -> str:
         until = datetime.strptime(parts["UNTIL"][:8], "%Y%m%d")
         told = str(texts["until"]).format(rhythm=told, date=a_date(until, language))
     return told
+
+
+def times_in_words(moments: Sequence[str], language: str) -> str:
+    """ "08:00 and 14:00"."""
+    return _listed(moments, texts_in(language, "schedules"))
+
+
+def _moments(moments: Sequence[datetime], rhythm: Rhythm, language: str, now: float | None) -> str:
+    """ "on Monday, 30 November 2026 at 10:00 and 16:00"."""
+    texts = texts_in(language, "schedules")
+    told = []
+    for day, group in itertools.groupby(moments, lambda each: each.date()):
+        at = _at([f"{each:%H:%M}" for each in group], texts)
+        noon = datetime(day.year, day.month, day.day, 12)
+        near = texts["near_days"].get(_ahead(day, rhythm, now))
+        on = on_date(noon, language)
+        if near is not None:
+            weekday = texts["weekdays"][day.weekday()]
+            on = str(texts["near_date"]).format(near=near, weekday=weekday, date=_date(noon, texts))
+        told.append(f"{on} {at}")
+    return _listed(told, texts)
+
+
+def near_moment(rhythm: Rhythm, language: str, now: float) -> str:
+    """Of what is once: "tomorrow at 08:00"."""
+    texts = texts_in(language, "schedules")
+    near = texts["near_days"].get(_ahead(rhythm.begins.date(), rhythm, now))
+    return f"{near or on_date(rhythm.begins, language)} {_at([f'{rhythm.begins:%H:%M}'], texts)}"
+
+
+def _ahead(day: date, rhythm: Rhythm, now: float | None) -> int | None:
+    return (day - local(now, rhythm.zone).date()).days if now is not None else None
 
 
 def on_date(day: datetime, language: str) -> str:
@@ -76,7 +112,9 @@ def _told(rhythm: Rhythm, parts: Mapping[str, str], texts: Mapping[str, Any]) ->
     if frequency in ("MINUTELY", "HOURLY") and known:
         every = _every(frequency, interval, texts)
         return str(texts["from_time"]).format(rhythm=every, date=date, time=f"{begins:%H:%M}")
-    time = _at(list(_times(rhythm, parts)), texts)
+    clocks = list(_times(rhythm, parts))
+    passing = _passing(clocks, texts)
+    time = passing or _at(clocks, texts)
     days = [_day(each) for each in parts["BYDAY"].split(",")] if "BYDAY" in parts else []
     weekdays = sorted({day for _, day in days})
     told = ""
@@ -84,8 +122,12 @@ def _told(rhythm: Rhythm, parts: Mapping[str, str], texts: Mapping[str, Any]) ->
         if frequency == "WEEKLY" and not days:
             weekdays = [begins.weekday()]
         called = _listed([texts["weekdays"][day] for day in weekdays], texts) if weekdays else ""
+        kind = _of_days(frequency, weekdays, interval)
+        if passing and kind in texts["passing_on"]:
+            called = _listed([texts["on_weekdays"][day] for day in weekdays], texts) if days else ""
+            return str(texts["passing_on"][kind]).format(time=time, days=called)
         values = {"time": time, "days": called, "number": interval, "date": date}
-        told = str(texts[_of_days(frequency, weekdays, interval)]).format(**values)
+        told = str(texts[kind]).format(**values)
     elif known and interval == 1 and not (days and "BYMONTHDAY" in parts):
         several = parts.get("BYMONTH", str(begins.month))
         if frequency == "MONTHLY":
@@ -144,12 +186,25 @@ def _times(rhythm: Rhythm, parts: Mapping[str, str]) -> Iterator[str]:
 
 
 def _at(moments: Sequence[str], texts: Mapping[str, Any]) -> str:
-    minutes = [int(each[:2]) * 60 + int(each[3:]) for each in moments]
-    steps = {after - before for before, after in itertools.pairwise(minutes)}
-    if len(moments) >= _A_ROW and len(steps) == 1:
-        every = _every("MINUTELY", steps.pop(), texts)
-        return str(texts["passing"]).format(every=every, first=moments[0], last=moments[-1])
     return str(texts["at"]).format(times=_listed(moments, texts))
+
+
+def _passing(moments: Sequence[str], texts: Mapping[str, Any]) -> str | None:
+    """Times of day that are equally far apart by how far, also over midnight; None for others."""
+    if len(moments) < _A_ROW:
+        return None
+    minutes = [minutes_of(each) for each in moments]
+    gaps = [
+        (after - before) % A_DAY
+        for before, after in zip(minutes, [*minutes[1:], minutes[0]], strict=True)
+    ]
+    pause = max(range(len(gaps)), key=lambda at: (gaps[at], at))
+    steps = {gap for at, gap in enumerate(gaps) if at != pause}
+    if len(steps) != 1:
+        return None
+    first, last = moments[(pause + 1) % len(moments)], moments[pause]
+    every = _every("MINUTELY", steps.pop(), texts)
+    return str(texts["passing"]).format(every=every, first=first, last=last)
 
 
 def passing(unit: Literal["minutes", "seconds"], number: int, language: str = "en") -> str:

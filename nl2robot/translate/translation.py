@@ -17,7 +17,7 @@ import msgspec
 from grammar.language import UnknownLanguage, known_by_word, languages, load_language
 from grammar.naming import naming
 from grammar.normal import normal
-from grammar.plan import Plan, calls, methods, to_data
+from grammar.plan import Plan, calls, from_data, methods, to_data
 from grammar.planning.planner import (
     Answer,
     Drafts,
@@ -31,6 +31,7 @@ from grammar.planning.turn import Turn
 from grammar.program_parser import NotAPlan, parse_program
 from grammar.requests import ABOUT_RUNS, Request, agreed
 from grammar.summary import summary
+from grammar.times.said import begun_by
 from grammar.understanding import Context
 from nl2robot.deliberation.deciding import Chosen, Open, between, decide
 from nl2robot.deliberation.sufficing import is_sure
@@ -39,7 +40,8 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.run.history import told_of
 from nl2robot.schedule import talking as appointments
 from nl2robot.schedule.asking import Timeless, asked_for
-from nl2robot.schedule.rhythm import BadRhythm
+from nl2robot.schedule.rhythm import BadRhythm, local
+from nl2robot.schedule.wishes import first_time
 from nl2robot.schedule.words import in_words
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
@@ -65,6 +67,9 @@ BRIEF = 8
 """Tokens up to which the rules think about a sentence here: "stop" waits for nobody else's."""
 POLITE = 3
 """Words that an answer may have besides those of what was offered."""
+SOON = 15 * 60
+"""Seconds until which somebody waits beside the robot rather than sends it an appointment: it has
+little else to do before, and they see that it waits. Beyond that it would be kept from others."""
 _IN_ANY_LANGUAGE = ({"set_language"}, {"stop"})
 """What is done, whatever language it is asked for in."""
 
@@ -96,7 +101,7 @@ def translate(
     answered = _settled(utterance, knowledge, talk, schedule)
     if answered is not None:
         return _answer(utterance, answered, None, started)
-    later = _with_its_time(utterance, knowledge, language, planner, talk, watch, do)
+    later = _with_its_time(utterance, knowledge, language, planner, talk, watch, do, schedule)
     if later is not None:
         return later
     if not as_errand:
@@ -136,7 +141,8 @@ def translate(
             what = translate(
                 request.sentence, knowledge, turn.language.code, planner, watch=watch, do=do
             )
-            return _at_set_times(utterance, request, what, turn.language.code, talk, started)
+            now = _now(schedule)
+            return _at_set_times(utterance, request, what, turn.language.code, talk, now, started)
         case Service(request=request):
             talk.context = answer.context
             reply = _replied(request, knowledge, turn.language.code, before, talk, record, schedule)
@@ -157,6 +163,13 @@ def translate(
                 utterance, "clarify", question.message, question.suggestions, started
             )
         case Chosen():
+            if schedule is not None:
+                later = _as_an_appointment(
+                    utterance, turn, answer, knowledge, planner, talk, schedule, do, started
+                )
+                if later is not None:
+                    talk.context = answer.draft.context
+                    return later
             talk.context = answer.draft.context
             seen = history.sightings.told(turn, answer.plan) if history and not insists else None
             if seen is not None:
@@ -177,20 +190,21 @@ def _at_set_times(
     what: Translation,
     language: str,
     talk: Talk,
+    now: float,
     started: float,
 ) -> Translation:
     """What is to be done is understood, or not; at what times is told here, or asked back."""
     if what.program is None:
         return msgspec.structs.replace(what, utterance=utterance, ms=_milliseconds(started))
     try:
-        found = asked_for(request, time.time(), local_zone(), language)
+        found = asked_for(request, now, local_zone(), language)
     except BadRhythm as error:
         message = in_language(str(error), language) or str(error)
         return _without_program(utterance, "rejected", message, (), started)
     if isinstance(found, Timeless):
         talk.timeless = found
         return _without_program(utterance, "clarify", found.question, found.sentences, started)
-    words = in_words(found, language)
+    words = in_words(found, language, now)
     planned = Scheduled(
         rhythm=found,
         when=words,
@@ -209,6 +223,44 @@ def _at_set_times(
     return msgspec.structs.replace(answer, schedule=planned, confidence=what.confidence)
 
 
+def _as_an_appointment(
+    utterance: str,
+    turn: Turn,
+    chosen: Chosen,
+    knowledge: Knowledge,
+    planner: str,
+    talk: Talk,
+    schedule: Schedule,
+    do: Do,
+    started: float,
+) -> Translation | None:
+    """What is to be done later, once, is for the book of appointments: there it survives a restart,
+    and nobody's robot stands still until then. None for what begins at once or soon, or where what
+    is left without its time is not the same."""
+    later = begun_by(turn.text, turn.lexicon, turn.language.code, chosen.plan)
+    if later is None:
+        return None
+    request = later.request
+    now, zone = schedule.clock(), local_zone()
+    with suppress(BadRhythm):
+        first = first_time(later.when, now, zone)
+        if first is not None and first - now < SOON and later.waits_until(local(first, zone)):
+            return None
+    alone = Talk()
+    alone.context = turn.context
+    language = turn.language.code
+    what = translate(request.sentence, knowledge, language, planner, alone, do=do)
+    rest = msgspec.structs.replace(chosen.plan, steps=later.steps)
+    if what.plan is None or normal(from_data(what.plan)).steps != normal(rest).steps:
+        return None
+    return _at_set_times(utterance, request, what, language, talk, now, started)
+
+
+def _now(schedule: Schedule | None) -> float:
+    """Whoever keeps appointments says what time it is."""
+    return schedule.clock() if schedule is not None else time.time()
+
+
 def _with_its_time(
     utterance: str,
     knowledge: Knowledge,
@@ -217,19 +269,20 @@ def _with_its_time(
     talk: Talk,
     watch: Watch,
     do: Do,
+    schedule: Schedule | None,
 ) -> Translation | None:
     """What is to be done, at the time of day that was said when it was asked back; None if this is
     no answer to that."""
     timeless, talk.timeless = talk.timeless, None
-    whole = timeless.with_answer(utterance, language) if timeless is not None else None
-    if whole is None:
-        return None
-    mine = talk.copy()
-    made = translate(whole, knowledge, language, planner, mine, watch=watch, do=do)
-    if made.schedule is None:
-        return None
-    talk.adopt(mine)
-    return msgspec.structs.replace(made, utterance=utterance)
+    for whole in timeless.with_answer(utterance, language) if timeless is not None else ():
+        mine = talk.copy()
+        made = translate(
+            whole, knowledge, language, planner, mine, watch=watch, do=do, schedule=schedule
+        )
+        if made.schedule is not None:
+            talk.adopt(mine)
+            return msgspec.structs.replace(made, utterance=utterance)
+    return None
 
 
 def _turn(utterance: str, knowledge: Knowledge, language: str, context: Context | None) -> Turn:

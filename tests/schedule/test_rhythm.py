@@ -127,9 +127,9 @@ def test_until_a_day_is_with_that_day(until: str) -> None:
         ),
         (
             "FREQ=DAILY;BYHOUR=9,10,11,12,13;BYMINUTE=0",
-            "every day every hour from 09:00 to 13:00",
-            "jeden Tag jede Stunde von 09:00 bis 13:00",
-            "tous les jours toutes les heures de 09:00 à 13:00",
+            "every hour from 09:00 to 13:00",
+            "jede Stunde von 09:00 bis 13:00",
+            "toutes les heures de 09:00 à 13:00",
         ),
         (
             "FREQ=MINUTELY;INTERVAL=10;COUNT=3",

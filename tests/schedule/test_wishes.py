@@ -58,12 +58,12 @@ NOW = at("2026-11-30 09:15")  # a Monday
         ),
         (
             When(minutes=150),
-            "once on Monday, 30 November 2026 at 11:46",
-            "Mon 30 Nov 11:46",
+            "once on Monday, 30 November 2026 at 11:45",
+            "Mon 30 Nov 11:45",
         ),
         (
             When(minutes=60, repeats=True, since="09:00", until="17:00"),
-            "every day every hour from 09:00 to 17:00",
+            "every hour from 09:00 to 17:00",
             "Mon 30 Nov 10:00",
         ),
         (
@@ -86,6 +86,38 @@ def test_what_is_meant(when: When, words: str, first: str) -> None:
     assert f"{local(moment, ZURICH):%a %d %b %H:%M}" == first
 
 
+@pytest.mark.parametrize(
+    ("when", "now", "words"),
+    [
+        (When(times=("08:00",)), "2026-11-30 10:00", "tomorrow, Tuesday, 1 December 2026, at"),
+        (When(times=("08:00",)), "2026-11-30 07:00", "today, Monday, 30 November 2026, at 08:00"),
+        (
+            When(times=("10:00", "16:00")),
+            "2026-12-31 12:00",
+            "today, Thursday, 31 December 2026, at 16:00"
+            " and tomorrow, Friday, 1 January 2027, at 10:00",
+        ),
+        (
+            When(times=("10:00", "16:00"), days_ahead=0),
+            "2026-12-31 12:00",
+            "today, Thursday, 31 December 2026, at 16:00",
+        ),
+    ],
+)
+def test_the_review_says_which_day_it_will_be(when: When, now: str, words: str) -> None:
+    found = rhythm_of(when, at(now), ZURICH)
+    assert isinstance(found, Rhythm)
+    assert in_words(found, "en", at(now)).startswith(f"once {words}")
+
+
+def test_the_hours_of_a_night_are_told_as_such() -> None:
+    when = When(minutes=120, repeats=True, since="22:00", until="06:00", weekdays=(5, 6))
+    found = rhythm_of(when, NOW, ZURICH)
+    assert isinstance(found, Rhythm)
+    assert in_words(found) == "every 2 hours from 22:00 to 06:00 on weekends"
+    assert in_words(found, "de") == "alle 2 Stunden von 22:00 bis 06:00, samstags und sonntags"
+
+
 def test_tomorrow_at_ten_and_at_four_is_twice() -> None:
     found = rhythm_of(When(times=("10:00", "16:00"), days_ahead=1), NOW, ZURICH)
     assert isinstance(found, Rhythm)
@@ -96,9 +128,9 @@ def test_tomorrow_at_ten_and_at_four_is_twice() -> None:
 
 
 def test_what_may_be_two_times_of_day_is_asked_back() -> None:
-    when = When(times=("08:00",), repeats=True, unclear=("08:00", "20:00"))
-    assert rhythm_of(when, NOW, ZURICH) == Unclear(("08:00", "20:00"))
-    found = rhythm_of(when, NOW, ZURICH, time="20:00")
+    when = When(times=("08:00",), bare=("08:00",), repeats=True)
+    assert rhythm_of(when, NOW, ZURICH) == Unclear((("08:00",), ("20:00",)))
+    found = rhythm_of(when, NOW, ZURICH, times=("20:00",))
     assert isinstance(found, Rhythm) and in_words(found) == "every day at 20:00"
 
 
@@ -113,11 +145,31 @@ def test_a_day_without_a_time_is_asked_back() -> None:
         (When(times=("10:00",), date="02-30"), "There is no day 02-30"),
         (When(times=("10:00",), date="2026-02-30"), "There is no day 2026-02-30"),
         (When(minutes=1, repeats=True), "more often than"),
+        (When(times=("10:00",), date="12-24", weekdays=(0,)), "another day of the week"),
+        (When(times=("09:00",), days_ahead=0), "That time is past"),
+        (When(times=("09:00",), date="2026-11-30"), "That time is past"),
     ],
 )
 def test_what_never_comes_or_too_often_is_told(when: When, sentence: str) -> None:
     with pytest.raises(BadRhythm, match=sentence):
         rhythm_of(when, NOW, ZURICH)
+
+
+@pytest.mark.parametrize(
+    ("now", "first"),
+    [
+        ("2026-03-28 12:00", "Sun 29 Mar 03:00"),  # the clocks leap over two o'clock
+        ("2026-10-24 12:00", "Sun 25 Oct 02:30"),  # and show it twice: the first of them
+        ("2026-02-28 12:00", "Sun 01 Mar 02:30"),
+        ("2026-12-31 12:00", "Fri 01 Jan 02:30"),
+    ],
+)
+def test_tomorrow_at_half_past_two_in_the_night(now: str, first: str) -> None:
+    found = rhythm_of(When(times=("02:30",), days_ahead=1), at(now), ZURICH)
+    assert isinstance(found, Rhythm)
+    [moment] = times(found)
+    assert f"{local(moment, ZURICH):%a %d %b %H:%M}" == first
+    assert moment - at(now) == pytest.approx(14.5 * 3600, abs=1800)
 
 
 CLOCKS = st.integers(0, 24 * 12 - 1).map(lambda each: f"{each // 12:02}:{each % 12 * 5:02}")
