@@ -21,10 +21,15 @@ def own_process() -> int:
     return _born(number) << _BITS | number
 
 
+def process_number(process: int) -> int:
+    """As the system calls it."""
+    return process & ((1 << _BITS) - 1)
+
+
 def lives(process: int) -> bool:
     """Whether that process is there. Of a log that is older than these numbers it is told by the
     process's own number alone."""
-    born, number = process >> _BITS, process & ((1 << _BITS) - 1)
+    born, number = process >> _BITS, process_number(process)
     try:
         os.kill(number, 0)
     except ProcessLookupError:

@@ -20,13 +20,13 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.errors import UserError
-from nl2robot.run.process import own_process
+from nl2robot.run.process import lives, own_process
 from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, State, Why
 from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.triggers import Trigger
 from robot_api.errors import cause
 
-_VERSION: Final = 1
+_VERSION: Final = 2
 _SCHEMA: Final = """
 CREATE TABLE IF NOT EXISTS appointments (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -66,6 +66,10 @@ CREATE TABLE IF NOT EXISTS occurrences (
 );
 CREATE INDEX IF NOT EXISTS open_occurrences ON occurrences (state)
     WHERE state IN ('due', 'claimed', 'running');
+CREATE TABLE IF NOT EXISTS keepers (
+    robot TEXT PRIMARY KEY,
+    process INTEGER NOT NULL         -- that looks after its appointments
+);
 CREATE TABLE IF NOT EXISTS notices (
     id INTEGER PRIMARY KEY AUTOINCREMENT,
     time REAL NOT NULL,
@@ -134,6 +138,24 @@ class Book:
                 if self._db.in_transaction:
                     self._db.execute("ROLLBACK")
                 raise
+
+    # --- who keeps time
+
+    def kept_by(self, robot: str) -> int:
+        """The process that looks after the robot's appointments: this one, unless another does
+        that lives (`nl2robot.run.process`)."""
+        mine = own_process()
+        with self.at_once():
+            kept = self._read("SELECT process FROM keepers WHERE robot = ?", robot)
+            if kept and kept[0]["process"] != mine and lives(kept[0]["process"]):
+                return int(kept[0]["process"])
+            if not kept or kept[0]["process"] != mine:
+                self._write("INSERT OR REPLACE INTO keepers VALUES (?, ?)", robot, mine)
+        return mine
+
+    def leave(self, robot: str) -> None:
+        """This process looks after the robot's appointments no more."""
+        self._write("DELETE FROM keepers WHERE robot = ? AND process = ?", robot, own_process())
 
     # --- appointments
 

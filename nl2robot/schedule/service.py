@@ -12,6 +12,7 @@ import math
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -19,7 +20,7 @@ import msgspec
 
 from grammar.language import languages
 from nl2robot.errors import UserError
-from nl2robot.run.process import lives, own_process
+from nl2robot.run.process import lives, own_process, process_number
 from nl2robot.run.runlog import Run
 from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING, State
@@ -140,6 +141,10 @@ class Timekeeper:
         self._over.set()
         self._soon.set()
         self._thread.join()
+        book, robot = self._schedule.book(), self._schedule.robot
+        if book is not None and robot is not None:
+            with suppress(UserError):
+                book.leave(robot)
 
     def note(self, kind: str, data: Mapping[str, Any]) -> None:
         """An event of the robot or of its runs, or one of `nl2robot.schedule.triggers`."""
@@ -164,7 +169,8 @@ class Timekeeper:
         return True
 
     def look(self) -> None:
-        """Look once: tell what came of what was begun, and begin what is due."""
+        """Look once: tell what came of what was begun, and begin what is due. Raises
+        `UserError` where another server does so for a robot of this name."""
         reminded = self._ended_at_once()
         book = self._schedule.book() if reminded is None else self._schedule.opened()
         robot = self._schedule.robot
@@ -175,6 +181,13 @@ class Timekeeper:
         if reminded is not None and not book.has_run(reminded[0].id):
             run, found = reminded
             self._clerk.reminded(run.id, run.started, run.utterance or "", found)
+        keeper = book.kept_by(robot)
+        if keeper != own_process():
+            raise UserError(
+                f"Another server (process {process_number(keeper)}) looks after the appointments"
+                f" of {robot!r} in this data folder, so this one begins none. End one of the two,"
+                " or give this one a data folder of its own with NL2ROBOT_HOME."
+            )
         for occurrence, appointment in book.begun(robot):
             self._follow(self._clerk, book, occurrence, appointment)
         free, charging = self._waits() is None, self._runner.present.state.charging

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sqlite3
+import subprocess
+import sys
 from typing import Any
 
 import pytest
@@ -10,6 +12,8 @@ import pytest
 from nl2robot.review.review import digest
 from nl2robot.run.runlog import RunLog
 from nl2robot.run.state import State
+from nl2robot.schedule.rhythm import local
+from nl2robot.schedule.schedule import FILE
 from nl2robot.schedule.service import RESTS_AFTER_STOP, waits_for
 from robot_api.errors import AccessDenied, InvalidCall
 from sim.world.model import Zone
@@ -29,6 +33,48 @@ def test_a_round_is_made_each_morning_in_the_name_of_who_approved_it(ward: Ward)
     assert first.approved_by == f"Nurse Kim (appointment {added['id']})"
     assert first.utterance == "go to ward a and say good morning"
     assert [each["occurrence"]["run"] for each in ward.ask("history")] == [second.id, first.id]
+
+
+OTHER_SERVER = """
+import os, sys
+from nl2robot.schedule.book import Book
+
+made, file, robot = sys.argv[1:]
+book = Book(made)
+book.kept_by(robot)
+book.close()
+os.replace(made, file)  # at once: nobody finds it before its keeper is in it
+print("keeps time", flush=True)
+sys.stdin.read()
+"""
+
+
+def test_a_second_server_of_the_same_robot_begins_nothing_until_the_first_has_ended(
+    ward: Ward,
+) -> None:
+    file = ward.log.path.with_name(FILE)
+    made = file.with_name("made.sqlite")
+    robot = ward.robot.capabilities().name
+    arguments = [sys.executable, "-c", OTHER_SERVER, str(made), str(file), robot]
+    with subprocess.Popen(arguments, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+        assert other.stdout is not None and other.stdout.readline() == b"keeps time\n"
+        ward.add()
+        ward.clock.set("2026-11-30 08:00")
+        told = ward.notice("trouble")["told"]
+        assert f"process {other.pid}" in told["en"] and robot in told["en"]
+        assert "Prozess" in told["de"] and "processus" in told["fr"]
+        assert ward.states() == [] and ward.log.runs() == []
+        other.kill()
+    ward.until(["done"])
+
+
+def test_what_is_said_goes_by_the_clock_of_the_station(ward: Ward) -> None:
+    """Whatever the computer's shows."""
+    ward.clock.set("2026-11-30 10:00")
+    made = ward.robot.request("program.translate", {"utterance": "in two hours go to ward a"})
+    begins = made["schedule"]["rhythm"]["begins"]
+    zone = made["schedule"]["rhythm"]["zone"]
+    assert local(at("2026-11-30 12:00"), zone).strftime("%Y-%m-%dT%H:%M") == begins[:16]
 
 
 def test_what_is_planned_is_told(ward: Ward) -> None:
