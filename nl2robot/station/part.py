@@ -81,7 +81,7 @@ class Backstage:
     camera: Camera | None = None
     """The robot's, if people may look through it."""
     schedule: Schedule | None = None
-    """The appointments; None where there are none."""
+    """The appointments, and the clock that they go by; None where there are none."""
     links: list[Link] = field(default_factory=list)
     """To the pages that other packages add; complete before the first page is built."""
     _listeners: list[Listener] = field(default_factory=list)

@@ -232,4 +232,4 @@ class _Runner:
 
 def _backstage(knowledge: Knowledge) -> Any:
     heard = SimpleNamespace(call=lambda method, arguments, stop: None)
-    return SimpleNamespace(runner=_Runner(knowledge), driver=heard, talks=Talks())
+    return SimpleNamespace(runner=_Runner(knowledge), driver=heard, talks=Talks(), schedule=None)

@@ -472,7 +472,9 @@ class Dialogue:
     def _review(self, draft: Draft, language: str) -> None:
         self.draft = draft
         self._changed()
-        at = next_begin(draft.times.rhythm, time.time()) if draft.times is not None else None
+        schedule = self._backstage.schedule
+        now = schedule.clock() if schedule is not None else time.time()
+        at = next_begin(draft.times.rhythm, now) if draft.times is not None else None
         review = self._backstage.runner.check(draft.program, language, draft.continues, at)
         if self.draft is draft:
             self.draft = replace(draft, review=review)
