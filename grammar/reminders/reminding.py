@@ -44,6 +44,7 @@ from grammar.traversal import nodes
 ANSWER: Final = "reminder_done"
 """The variable with the answer: by it a program that reminds somebody is known."""
 TRIES: Final = 2
+_HERE: Final = Ask("people")
 _ON_THE_WAY: Final = frozenset({"find", "goto", "wait", "wait_until", "location", "say", "people"})
 """What a program does that only reminds somebody."""
 
@@ -74,6 +75,9 @@ def reminding(plan: Plan, d: Discourse) -> Plan:
     person = reminded.person
     whom = person.value if person is not None and person.known and person.group is None else None
     several = person is not None and (person.plural or person.text == ANYONE)
+    everybody = any(isinstance(each, ForEach) and each.items == _HERE for each in nodes(plan.steps))
+    if (several or everybody) and reminded.of != "deed":
+        return plan  # of lunch, or of what is so, people who are there are only told
     asking = _Asking(d, saying, reminded.of, several)
     return msgspec.structs.replace(plan, steps=asking.inside(plan.steps, whom))
 
@@ -110,7 +114,7 @@ class _Asking:
                     then = self.inside(step.then, found if named else None)
                     step = msgspec.structs.replace(step, then=then)
                 case ForEach(items=items, variable=name):
-                    each = Recall(name) if items == Ask("people") else person
+                    each = Recall(name) if items == _HERE else person
                     step = msgspec.structs.replace(step, steps=self.inside(step.steps, each))
                 case _:
                     pass

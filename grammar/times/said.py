@@ -71,6 +71,7 @@ def times_said(reader: SentenceReader) -> Iterator[Said]:
         (
             (start - end, start, rule)
             for rule in _SETS
+            if rule in reader.language.rules  # not in every language that somebody added
             for start in range(reader.last_word)
             for end in _ends(chart, rule, start)
         ),
