@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests coverage soak attacks browser systemd broker ros2 wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
+.PHONY: run voices test format lint types tests coverage soak attacks browser systemd broker ros2 node client wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -68,12 +68,12 @@ types: $(STAMP)
 # Most stories wait for something, so there are more of them at a time than cores; those of a file,
 # which share a console or a robot, stay together. Many start commands, which would compile what they
 # import each time where Python may write no bytecode.
-tests: $(STAMP) browser systemd broker ros2
+tests: $(STAMP) browser systemd broker ros2 node
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
 	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile
 
 # Which lines no test runs; a module of which tests run less than 70 % has to say why.
-coverage: $(STAMP) browser broker
+coverage: $(STAMP) browser broker node
 	rm -rf .coverage && mkdir .coverage
 	$(BIN)/pytest -q -n auto --dist loadfile --cov --cov-report=; $(BIN)/coverage json -q -o .coverage/coverage.json
 	$(BIN)/python -m tests.coverage .coverage/coverage.json
@@ -132,6 +132,23 @@ ros2: $(STAMP)
 	    $(BIN)/python -m venv $(ROS2) && $(ROS2)/bin/python -m pip install --quiet -r tests/robots/ros/requirements.txt \
 	      && touch $(ROS2)/.installed || echo "There is no ROS 2 to be had here: its driver is tested on its stand-in alone."; \
 	  fi
+
+# The client for JavaScript is checked and tested in Node, with what its lock file names.
+CLIENT   := nl2robot/console/static/client
+WORKSHOP := docs/clients/javascript
+node:
+	@if ! command -v npm >/dev/null; then \
+	  echo "The client for JavaScript is not tested without Node 20 or newer and npm."; \
+	elif ! [ $(WORKSHOP)/node_modules/.package-lock.json -nt $(WORKSHOP)/package-lock.json ]; then \
+	  echo "Installing what the client for JavaScript is checked with ..."; \
+	  npm ci --silent --ignore-scripts --prefix $(WORKSHOP) && touch $(WORKSHOP)/node_modules/.package-lock.json; \
+	fi
+
+# After a change of a method on the wire: its types. What they are made from, a server says of itself.
+client: $(STAMP) node
+	$(BIN)/python -m nl2robot.console.wire_page --document | node $(WORKSHOP)/generate.mjs > $(CLIENT)/methods.d.ts.new
+	mv $(CLIENT)/methods.d.ts.new $(CLIENT)/methods.d.ts
+	$(WORKSHOP)/node_modules/.bin/tsc --project $(WORKSHOP) --outDir $(CLIENT)
 
 # What comes ready made for a robot's own computer: asks the index of packages.
 wheels: $(STAMP)
@@ -215,4 +232,4 @@ bench: $(STAMP)
 	$(BIN)/nl2robot bench
 
 clean:
-	rm -rf $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .coverage .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(WORKSHOP)/node_modules $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .coverage .mypy_cache .pytest_cache .ruff_cache .hypothesis

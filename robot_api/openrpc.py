@@ -8,6 +8,7 @@ the JSON Schema of its params as a whole, which says what of them goes together.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any, Protocol
 
@@ -15,10 +16,12 @@ import msgspec
 
 from robot_api import errors, protocol
 from robot_api.driver import EVENTS, Capabilities
-from robot_api.methods import METHODS, Method
+from robot_api.methods import METHODS, TEXT, Method, Parameter
 from robot_api.schema import parameter_schema, params_schema, result_schema
 
 ERRORS_OF_EVERY_METHOD = ("NotSupported", "InvalidCall", "Stopped", "InternalError")
+_WHO = Parameter("who", TEXT, "in whose name, for those who look on", default="")
+"""What a stop takes on the wire alone: a program has nobody to name."""
 
 
 class Documented(Protocol):
@@ -63,6 +66,8 @@ def openrpc(
 
 
 def _robot_method(method: Method) -> dict[str, Any]:
+    if f"robot.{method.name}" == protocol.STOP:
+        method = replace(method, forms=((_WHO,),))
     parameters = {parameter.name: parameter for form in method.forms for parameter in form}
     always = [
         name

@@ -416,7 +416,7 @@ class Server:
         if call.method == "robot.capabilities":
             return lambda stop: self.driver.capabilities()
         if call.method == "rpc.discover":
-            return lambda stop: openrpc(self.driver.capabilities(), self.services, self.events)
+            return lambda stop: self._document()
         service, guest = self.services[call.method], client.guest
         arguments = call.arguments
         if guest.name is not None:
@@ -439,6 +439,7 @@ class Server:
     def _app(self) -> Guard:
         routes: list[BaseRoute] = [
             Route(OPEN_TO_ALL, self._health),
+            Route("/openrpc.json", self._described),
             WebSocketRoute("/", self._serve_client),
             Mount("/", self._pages) if self._pages else Route("/", self._page),
         ]
@@ -468,6 +469,12 @@ class Server:
 
     async def _health(self, request: Request) -> JSONResponse:
         return JSONResponse({"status": "ok"})
+
+    async def _described(self, request: Request) -> JSONResponse:
+        return JSONResponse(await asyncio.to_thread(self._document), headers=HEADERS)
+
+    def _document(self) -> dict[str, Any]:
+        return openrpc(self.driver.capabilities(), self.services, self.events)
 
     async def _page(self, request: Request) -> HTMLResponse:
         status = Status(

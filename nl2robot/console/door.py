@@ -36,6 +36,7 @@ PLAIN: Final = frozenset(
 """What anybody may see, also before their device trusts the robot."""
 NEEDS: Final[Mapping[str, Right]] = {
     "/static": "know",
+    "/openrpc.json": "know",
     "/face": "know",
     "/sign-out": "know",
     "/codes": "operate",

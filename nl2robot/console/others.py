@@ -22,8 +22,8 @@ from robot_api.plugins import PAGES, Plugin, PluginError, left_out, plugins
 from robot_api.server import Service
 
 OURS: Final = frozenset(
-    {"authority", "devices", "face", "favicon", "healthz", "join", "map", "program", "robot", "rpc"}
-    | {"run", "schema", "sign-in", "sign-out", "static", "stop", "trust", "voice", "_nicegui"}
+    {"authority", "devices", "face", "favicon", "healthz", "join", "map", "openrpc", "program"}
+    | {"robot", "rpc", "run", "schema", "sign-in", "sign-out", "static", "stop", "trust", "voice", "_nicegui"}
 )
 """Names that the server and the door have taken, besides those of the parts."""
 

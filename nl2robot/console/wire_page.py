@@ -3,10 +3,12 @@ mark is written by hand.
 
 python -m nl2robot.console.wire_page            prints the page
 python -m nl2robot.console.wire_page --write    writes that part of docs/wire.md anew
+python -m nl2robot.console.wire_page --document    prints what it is made from, as JSON
 """
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
@@ -200,9 +202,12 @@ def _field(name: str, schema: Any, whole: Mapping[str, Any]) -> str:
 
 
 if __name__ == "__main__":
+    document, services = served()
     head, _, _ = PAGE.read_text("utf-8").partition(MARK)
-    made = page(head, *served())
-    if "--write" in sys.argv[1:]:
+    made = page(head, document, services)
+    if "--document" in sys.argv[1:]:
+        print(json.dumps(document))
+    elif "--write" in sys.argv[1:]:
         PAGE.write_text(made, encoding="utf-8")
     else:
         print(made, end="")
