@@ -59,6 +59,7 @@ class Record(msgspec.Struct):
 
     def between(self, start: float, end: float = math.inf) -> Record:
         """The part of the timeline from one moment to another, in seconds of simulated time."""
+        start = round(start, 3)  # as what is noted is: it may be from this very moment
         return Record(
             world=self.world,
             people=self.people,

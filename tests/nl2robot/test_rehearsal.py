@@ -50,6 +50,12 @@ def test_the_way_the_words_and_the_time_are_foreseen(ward) -> None:
     assert min(apart) > 0.4
 
 
+def test_what_is_said_at_once_is_foreseen_whenever_it_is_looked_at(ward) -> None:
+    for _ in range(6):
+        assert rehearse('robot.say("Good night.")\n', ward).says == ("Good night.",)
+        rehearse("robot.wait(0.01)\n", ward)
+
+
 def test_a_failure_is_foreseen_with_its_line(ward) -> None:
     told = rehearse('robot.say("Now.")\nrobot.grab("unicorn")\n', ward)
     assert (told.status, told.line) == ("failed", 2)
