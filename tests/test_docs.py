@@ -16,7 +16,8 @@ from tests.played import commands
 
 ROOT = Path(__file__).parents[1]
 DOCS = ROOT / "docs"
-PAGES = sorted([*DOCS.rglob("*.md"), *ROOT.glob("*.md")])
+FILES = [*DOCS.rglob("*.md"), *ROOT.glob("*.md")]
+PAGES = sorted(file for file in FILES if "node_modules" not in file.parts)
 BLOCK = re.compile(r"^```([^\n`]*)\n(.*?)^```$", re.M | re.S)
 OURS = re.compile(rf"(?:^|[/\s])nl2robot ({'|'.join(COMMANDS)})\b(.*)")
 EACH = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())

@@ -20,7 +20,7 @@ from nl2robot.cli import reference
 ROOT = Path(__file__).parents[1]
 on_page_markdown = runpy.run_path(str(ROOT / "docs/deploy/site.py"))["on_page_markdown"]
 DOCS = ROOT / "docs"
-PAGES = sorted(page for page in DOCS.rglob("*.md"))
+PAGES = sorted(page for page in DOCS.rglob("*.md") if "node_modules" not in page.parts)
 FILES = [*PAGES, *ROOT.glob("*.md"), *(ROOT / "grammar").glob("*.md")]
 
 

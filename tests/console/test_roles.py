@@ -56,6 +56,7 @@ PAGES = {
     "/devices": {"operator", "administrator"},
     "/face": set(ROLES),
     "/static/wire.js": set(ROLES),
+    "/openrpc.json": set(ROLES),
     "/nothing/here": {"observer", "assistant", "operator", "administrator"},
 }
 OPEN = ("/healthz", "/sign-in", "/join/nonsense", "/trust", "/static/console.css")
