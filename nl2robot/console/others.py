@@ -23,7 +23,8 @@ from robot_api.server import Service
 
 OURS: Final = frozenset(
     {"authority", "devices", "face", "favicon", "healthz", "join", "map", "openrpc", "program"}
-    | {"robot", "rpc", "run", "schema", "sign-in", "sign-out", "static", "stop", "trust", "voice", "_nicegui"}
+    | {"robot", "rpc", "run", "schema", "sign-in", "sign-out", "static", "stop", "trust", "voice"}
+    | {"_nicegui"}
 )
 """Names that the server and the door have taken, besides those of the parts."""
 

@@ -1,5 +1,5 @@
-"""The client for JavaScript: it fits the server, goes with Node's own WebSocket and with that of `ws`,
-and in a page of the server; its types keep out what the server would refuse."""
+"""The client for JavaScript: it fits the server, goes with Node's own WebSocket and with that of
+`ws`; its types keep out what the server would refuse. In a page: tests/console/test_client.py."""
 
 from __future__ import annotations
 
@@ -15,11 +15,9 @@ from pathlib import Path
 
 import pytest
 from playwright._impl._driver import compute_driver_executable
-from playwright.sync_api import Browser
 
 from tests.clients.conftest import CLIENT, MODULES, ROOT, WORKSHOP, Run
 from tests.console.conftest import Served, serving
-from tests.console.conftest import chromium as chromium
 
 STORIES = Path(__file__).with_name("stories")
 FILES = ("package.json", "nl2robot.js", "nl2robot.d.ts", "methods.d.ts")
@@ -97,25 +95,6 @@ def test_from_elsewhere_one_shows_a_token(
         TOKEN=token,
         NODE_EXTRA_CA_CERTS=str(house.home / "certificates" / "authority.crt"),
     )
-
-
-def test_a_page_of_the_server_uses_it_as_it_is(served: Served, chromium: Browser) -> None:
-    page = chromium.new_page()
-    page.goto(f"{served.url}/healthz")
-    said = page.evaluate(
-        """async () => {
-          const {connect} = await import('/static/client/nl2robot.js');
-          const ward = await connect();
-          const said = [];
-          await ward.subscribe('speech', ({text}) => said.push(text));
-          await ward.robot.say({text: 'Hello'});
-          const wrong = await connect(undefined, {token: 'wrong'}).catch((error) => error.name);
-          ward.close();
-          return [...said, wrong];
-        }"""
-    )
-    page.close()
-    assert said == ["Hello", "AccessDenied"]
 
 
 # --- what is made ---------------------------------------------------------------------------------

@@ -17,6 +17,8 @@ from nl2robot.knowledge import DEFAULT_WORLD, Knowledge
 from nl2robot.review import rehearsal
 from nl2robot.review.rehearsal import Budget, rehearse, watched
 from nl2robot.review.review import review
+from robot_api.driver import StopFlag
+from robot_api.drivers import simulated
 from sim.simulation import Simulation
 from sim.world.loading import load_world
 
@@ -51,9 +53,10 @@ def test_the_way_the_words_and_the_time_are_foreseen(ward) -> None:
 
 
 def test_what_is_said_at_once_is_foreseen_whenever_it_is_looked_at(ward) -> None:
+    driver = simulated(ward)
     for _ in range(6):
-        assert rehearse('robot.say("Good night.")\n', ward).says == ("Good night.",)
-        rehearse("robot.wait(0.01)\n", ward)
+        assert rehearse('robot.say("Good night.")\n', ward.copy()).says == ("Good night.",)
+        driver.call("wait", {"seconds": 0.01}, StopFlag())  # a step of the simulation
 
 
 def test_a_failure_is_foreseen_with_its_line(ward) -> None:

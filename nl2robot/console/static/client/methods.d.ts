@@ -649,14 +649,32 @@ export interface Methods {
             until?: string | null;
             unclear?: string[];
           } | null;
+          happening?: {
+            what: 'battery' | 'heard' | 'place' | 'pressed' | 'scanned' | 'seen';
+            text?: string;
+            thing?: string;
+            place?: string;
+            below?: number;
+            rate?: number | null;
+            once?: boolean;
+            named?: boolean;
+          } | null;
         } | null;
         schedule?: {
-          /** When something is done. `checked` says whether times can be told by it. */
-          rhythm: {
+          rhythm?: {
             begins: string;
             zone: string;
             rule?: string | null;
-          };
+          } | null;
+          trigger?: {
+            what: 'battery' | 'heard' | 'message' | 'place' | 'pressed' | 'scanned' | 'seen';
+            text?: string;
+            thing?: string;
+            place?: string;
+            topic?: string;
+            below?: number;
+            every?: number;
+          } | null;
           when: string;
           sentence: string;
           program: string;
@@ -1005,6 +1023,8 @@ export interface Methods {
         due: number | null;
         off: number[];
         state: string;
+        last: number | null;
+        came: number;
       }[];
     };
     /**
@@ -1241,12 +1261,47 @@ export interface Methods {
       params: Record<string, never>;
       result: string[];
     };
-    /** Somebody presses one of `schedule.buttons`. */
+    /**
+     * Somebody presses one of `schedule.buttons`. Tells whether that counts: not if it was pressed lately.
+     */
     press: {
       params: {
         button: string;
       };
-      result: null;
+      result: boolean;
+    };
+    /**
+     * Tell how an event that shall begin a program is kept: its place by the name that it has in this house, and what it is in words. Refuses what this robot would never notice. Nothing is planned.
+     */
+    event: {
+      params: {
+        trigger: {
+          what: 'battery' | 'place' | 'seen' | 'heard' | 'scanned' | 'pressed' | 'message';
+          text?: string;
+          thing?: string;
+          place?: string;
+          topic?: string;
+          below?: number;
+          every?: number;
+        };
+        language?: string;
+      };
+      /** An event that may begin a program. */
+      result: {
+        /**
+         * What begins an appointment instead of the clock. `checked` says whether it makes sense.
+         */
+        trigger: {
+          what: 'battery' | 'heard' | 'message' | 'place' | 'pressed' | 'scanned' | 'seen';
+          text?: string;
+          thing?: string;
+          place?: string;
+          topic?: string;
+          below?: number;
+          every?: number;
+        };
+        when: string;
+      };
     };
     /**
      * List the latest times that came, of an appointment or all, and what became of each; the newest first. Times to come that were called off are among them.
@@ -1360,6 +1415,7 @@ export interface Methods {
             | 'broken_off'
             | 'changed'
             | 'ended'
+            | 'ends_soon'
             | 'failed'
             | 'missed'
             | 'missed_many'
@@ -2236,7 +2292,11 @@ export interface Events {
    */
   schedule: any;
   /**
-   * id, time, kind (missed | missed_many | overtaken | waits | ended | changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once), occurrence, parts, told (the sentence by language): what somebody has to know who was not looking
+   * buttons: those that the robot's face shows now, as the method of this name lists them
+   */
+  'schedule.buttons': any;
+  /**
+   * id, time, kind (missed | missed_many | overtaken | waits | ends_soon | ended | changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once), occurrence, parts, told (the sentence by language): what somebody has to know who was not looking
    */
   notice: any;
   /**
