@@ -3,7 +3,8 @@
 //     java Tour.java ws://127.0.0.1:9090
 //     java -Djavax.net.ssl.trustStore=robot.p12 Tour.java wss://robin:9090 TOKEN
 //
-// It goes to a place, says something, asks, and is told of an error by its name. Ctrl-C stops the robot.
+// It goes to a place, says something, asks, and is told of an error by its name. Ctrl-C stops the robot,
+// and so does an error that nobody expected.
 
 import java.net.URI;
 import java.net.http.HttpClient;
@@ -24,16 +25,18 @@ public class Tour {
     public static void main(String[] words) {
         String address = words.length > 0 ? words[0] : "ws://127.0.0.1:9090";
         String token = words.length > 1 ? words[1] : null;
-        try (Robot robot = new Robot(address, token)) {
-            Thread atCtrlC = new Thread(() -> stop(robot));
-            Runtime.getRuntime().addShutdownHook(atCtrlC);
+        try {
+            Robot robot = new Robot(address, token);
+            Thread atTheEnd = new Thread(() -> stop(robot));
+            Runtime.getRuntime().addShutdownHook(atTheEnd);
             visit(robot);
-            Runtime.getRuntime().removeShutdownHook(atCtrlC);
+            Runtime.getRuntime().removeShutdownHook(atTheEnd);
+            robot.close();
         } catch (RobotError error) {
             System.err.println(error.name + ": " + error.getMessage());
-            System.exit(1);
+            System.exit(1); // once the robot stands: after Ctrl-C the hook is at it already
         } catch (IllegalStateException ending) {
-            // Ctrl-C came with the last answer: the hook is stopping the robot.
+            // Ctrl-C came with the last answer.
         }
     }
 
@@ -82,7 +85,7 @@ interface EventListener {
 }
 
 /** A connection to a robot's server. Calls from several threads run side by side. */
-class Robot implements WebSocket.Listener, AutoCloseable {
+class Robot implements WebSocket.Listener {
     private final AtomicLong ids = new AtomicLong();
     private final Map<Long, CompletableFuture<Object>> waiting = new ConcurrentHashMap<>();
     private final Map<String, EventListener> listeners = new ConcurrentHashMap<>();
@@ -122,8 +125,7 @@ class Robot implements WebSocket.Listener, AutoCloseable {
         call("rpc.subscribe", Map.of("events", List.of(kind)));
     }
 
-    @Override
-    public void close() {
+    void close() {
         socket.sendClose(WebSocket.NORMAL_CLOSURE, "");
     }
 

@@ -17,6 +17,9 @@ await assert.rejects(ward.robot.move({metres: NaN}), {
   message: 'metres of robot.move must be a number; got NaN.',
 });
 await assert.rejects(ward.robot.wait({seconds: 10n}), TypeError);
+// Not even to be sent: the server would let go of everything that this connection does.
+const long = 'é'.repeat(150_000);
+await assert.rejects(ward.program.check({program: long}), {name: 'InvalidCall', message: /too long/});
 await assert.rejects(ward.subscribe('poze', () => {}), {name: 'InvalidCall', message: /pose/});
 
 // One listener that fails silences no other.

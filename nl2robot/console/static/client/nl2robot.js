@@ -24,8 +24,8 @@
 
 /** @typedef {RobotConnection & Api} Robot */
 
-/** What to write and read the wire's version of JSON-RPC with. */
-const VERSION = '2.0';
+/** Bytes. A server closes the connection on whoever sends more, with all that is in flight. */
+const LONGEST_FRAME = 256 * 1024;
 const IN_A_PAGE = typeof document !== 'undefined';
 
 /** What went wrong, in a sentence; `name` is its name on the wire, such as "Blocked". */
@@ -122,7 +122,7 @@ class RobotConnection {
     const id = (this.#number += 1);
     /** @type {Promise<any>} */
     const answer = new Promise((resolve, reject) => {
-      const frame = written({jsonrpc: VERSION, id, method, params}, method);
+      const frame = written({jsonrpc: '2.0', id, method, params}, method);
       this.#waiting.set(id, {resolve, reject});
       this.#socket.send(frame);
     });
@@ -260,10 +260,12 @@ function isWord(name) {
  * @param {string} method
  */
 function written(content, method) {
-  return JSON.stringify(content, (name, value) => {
+  const frame = JSON.stringify(content, (name, value) => {
     if (typeof value !== 'number' || Number.isFinite(value)) return value;
     throw new RobotError('InvalidCall', `${name} of ${method} must be a number; got ${value}.`);
   });
+  if (new TextEncoder().encode(frame).length <= LONGEST_FRAME) return frame;
+  throw new RobotError('InvalidCall', `What was given to ${method} is too long.`);
 }
 
 /**
