@@ -639,6 +639,8 @@ export interface Methods {
           part?: string;
           when?: {
             times?: string[];
+            bare?: string[];
+            half?: ('am' | 'night' | 'pm') | null;
             weekdays?: number[];
             days_ahead?: number | null;
             date?: string | null;
@@ -647,7 +649,6 @@ export interface Methods {
             count?: number | null;
             since?: string | null;
             until?: string | null;
-            unclear?: string[];
           } | null;
           happening?: {
             what: 'battery' | 'heard' | 'place' | 'pressed' | 'scanned' | 'seen';
