@@ -172,10 +172,10 @@ class Terminal:
         """What is in the book from now on."""
         about = kept.appointment
         zone = about.rhythm.zone if about.rhythm is not None else local_zone()
-        told = self.words["in_the_book"].format(
+        told = self.words["in_the_book" if kept.next else "in_the_book_at_event"].format(
             number=about.id,
             when=kept.when,
-            next=a_moment(kept.next[0], zone, self.language) if kept.next else "-",
+            next=a_moment(kept.next[0], zone, self.language) if kept.next else "",
             until=a_date(local(about.approved_until - 1, zone), self.language),
         )
         self.console.print(_plain(told))
