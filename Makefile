@@ -51,7 +51,7 @@ BUILDS  = $(BIN)/python -c 'import tomllib; print(*tomllib.load(open("pyproject.
 EXTRA   = $(BIN)/python -c 'import sys, tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"][sys.argv[1]], sep="\n")'
 lock: | $(BIN)/uv
 	$(COMPILE) pyproject.toml --extra dev -o locks/dev.txt >/dev/null
-	$(COMPILE) pyproject.toml $(patsubst %,--extra %,echo planner pepper ros assistants) --no-annotate -c locks/dev.txt -o locks/run.txt >/dev/null
+	$(COMPILE) pyproject.toml $(patsubst %,--extra %,echo planner pepper ros assistants fleet) --no-annotate -c locks/dev.txt -o locks/run.txt >/dev/null
 	$(BUILDS) | $(COMPILE) - --no-annotate -c locks/dev.txt -o locks/build.txt >/dev/null
 	$(EXTRA) voices | $(COMPILE) - --no-annotate -c locks/dev.txt -o locks/voices.txt >/dev/null
 

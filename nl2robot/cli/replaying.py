@@ -10,7 +10,7 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.run.going_on import recall_of
 from nl2robot.run.replay import replay
 from nl2robot.run.runlog import Run, RunLog
-from nl2robot.station.station import check_picture, draw
+from nl2robot.station.pictures import check_picture, draw
 from sim.simulation import Simulation
 from sim.world.loading import load_world
 

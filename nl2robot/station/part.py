@@ -24,6 +24,7 @@ from robot_api.driver import Driver, Event
 from robot_api.server import Publish, Service
 
 if TYPE_CHECKING:
+    from nl2robot.fleet.joining import Fleet
     from nl2robot.proposals.proposals import Proposals
     from nl2robot.run.runner import Runner
     from nl2robot.schedule.schedule import Schedule
@@ -82,6 +83,8 @@ class Backstage:
     """The robot's, if people may look through it."""
     schedule: Schedule | None = None
     """The appointments, and the clock that they go by; None where there are none."""
+    fleet: Fleet | None = None
+    """The robot's fleet, if it has joined one."""
     links: list[Link] = field(default_factory=list)
     """To the pages that other packages add; complete before the first page is built."""
     _listeners: list[Listener] = field(default_factory=list)

@@ -6,9 +6,7 @@ the address of another.
 
 from __future__ import annotations
 
-import errno
 import math
-import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext, suppress
@@ -19,6 +17,10 @@ from typing import TYPE_CHECKING, Any
 from nl2robot.building.broker import BrokerAddress
 from nl2robot.building.joining import House
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.fleet.address import FleetAddress
+from nl2robot.fleet.joining import Fleet
+from nl2robot.fleet.wire import EVENTS as FLEET_EVENTS
+from nl2robot.fleet.wire import fleet_services
 from nl2robot.knowledge import Knowledge
 from nl2robot.proposals import proposals as proposing
 from nl2robot.proposals.proposals import Proposals
@@ -37,6 +39,7 @@ from nl2robot.station.clients import client_of
 from nl2robot.station.harmless import ONLY_LOOKS
 from nl2robot.station.local_clock import now_in
 from nl2robot.station.part import STOP, Backstage
+from nl2robot.station.pictures import draw
 from nl2robot.station.services import EVENTS, reviewer, services
 from nl2robot.translate.routines import open_routines
 from nl2robot.translate.talks import Talks
@@ -111,44 +114,6 @@ class SimulatedStation(Station):
         return True
 
 
-def check_picture(file: Path) -> None:
-    """Raise `UserError` if no picture can be saved there, before anything runs for it."""
-    if file.suffix.lower() not in (".svg", ".png", ".webp", ".gif"):
-        raise UserError(
-            f"A picture cannot be saved as {str(file)!r}. Choose a name that ends in"
-            " .svg, .png, .webp or .gif."
-        )
-    with _saving(file):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        if file.is_dir() or not os.access(file if file.exists() else file.parent, os.W_OK):
-            raise PermissionError(errno.EACCES, "it may not be written")
-
-
-def draw(record: Record, world: World, file: Path) -> None:
-    """Draw a run; the file's ending says how. Raises `UserError`."""
-    from sim.pictures import drawing as pictures
-
-    check_picture(file)
-    with _saving(file):
-        match file.suffix.lower():
-            case ".svg":
-                file.write_text(pictures.svg(world, record), encoding="utf-8")
-            case ".png":
-                pictures.png(world, record, file)
-            case _:
-                pictures.animate(world, record, file)
-
-
-@contextmanager
-def _saving(file: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise UserError(
-            f"The picture {file} cannot be saved ({error.strerror}). Choose another place for it."
-        ) from error
-
-
 @contextmanager
 def simulated_station(
     world: World,
@@ -167,6 +132,7 @@ def simulated_station(
     start: datetime | None = None,
     timing: Timing | None = None,
     broker: BrokerAddress | None = None,
+    fleet: FleetAddress | None = None,
 ) -> Iterator[SimulatedStation]:
     """Open a station with a simulated robot.
 
@@ -210,6 +176,7 @@ def simulated_station(
         console=console,
         timing=timing,
         broker=broker,
+        fleet=fleet,
     ) as server:
         station = SimulatedStation(server, simulation)
         yield station
@@ -266,6 +233,7 @@ def robot_station(
     console: Callable[[Backstage], Console] | None = None,
     timing: Timing | None = None,
     broker: BrokerAddress | None = None,
+    fleet: FleetAddress | None = None,
 ) -> Iterator[tuple[Station, Server]]:
     """A station with a robot that is not simulated. Its places are those of `world`, in which dry
     runs are simulated, with the keep-out zones as they are then. `places` are what the driver is
@@ -295,6 +263,7 @@ def robot_station(
         console=console,
         timing=timing,
         broker=broker,
+        fleet=fleet,
     ) as server:
         yield Station(server.address, server.token), server
 
@@ -344,6 +313,7 @@ def _open(
     console: Callable[[Backstage], Console] | None = None,
     timing: Timing | None = None,
     broker: BrokerAddress | None = None,
+    fleet: FleetAddress | None = None,
 ) -> Iterator[Server]:
     """A server with a runner on it. `on_program` is told of the runs' events before others are,
     `give_way` ends what the robot says when a client speaks to it."""
@@ -360,9 +330,12 @@ def _open(
         publish(present.KIND, on_wire(state))
         backstage.tell(present.KIND, on_wire(state))
 
+    def connect() -> Robot:
+        return Robot(server.address, token=server.own_token)
+
     runner = Runner(
         knowledge=Knowledge(world, driver.capabilities(), open_routines()),
-        connect=lambda: Robot(server.address, token=server.own_token),
+        connect=connect,
         log=log,
         publish=publish,
         stage=(lambda: stage(runner.knowledge.world)) if world.has_geometry else None,
@@ -397,6 +370,7 @@ def _open(
 
     talks = Talks()
     proposals = Proposals(runner, publish)
+    company = Fleet(fleet, runner, connect) if fleet is not None else None
     attention = Attention()
     microphones = Microphones(
         lambda: runner.knowledge, talks.of, give_way, publish, runner.think, schedule
@@ -410,6 +384,7 @@ def _open(
         entrance=entrance,
         places=places,
         schedule=schedule,
+        fleet=company,
         camera=driver.camera if isinstance(driver, ComposedDriver) else None,
         publish=publish,
         wanted=lambda kind: server.wanted(kind),
@@ -441,6 +416,8 @@ def _open(
                 keeper.note("message", {"topic": topic, "text": text})
 
         house = House(broker, name, backstage, said_in_house)
+    if company is not None:
+        company.watch(backstage)
     added = console(backstage) if console else None
 
     def on_left(connection: str) -> None:
@@ -461,6 +438,7 @@ def _open(
             **schedule_services(schedule, keeper, runner.log),
             **proposal_services(proposals),
             **attention.services(),
+            **(fleet_services(company, runner) if company else {}),
             **(added.services if added else {}),
         },
         events={
@@ -468,6 +446,7 @@ def _open(
             **present.EVENTS,
             **schedule_service.EVENTS,
             **proposing.EVENTS,
+            **(FLEET_EVENTS if company else {}),
             **(added.events if added else {}),
         },
         remembered=(present.KIND,),
@@ -486,7 +465,7 @@ def _open(
         with server:
             runner.present.begin()
             try:
-                with house or nullcontext(), keeper or nullcontext():
+                with house or nullcontext(), keeper or nullcontext(), company or nullcontext():
                     yield server
             finally:
                 runner.close()

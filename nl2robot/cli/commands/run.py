@@ -22,10 +22,10 @@ from nl2robot.errors import UserError
 from nl2robot.paths import pictures_folder
 from nl2robot.station.garbage import swept
 from nl2robot.station.local_clock import beginning_of
+from nl2robot.station.pictures import check_picture
 from nl2robot.station.robots import Chosen, reached, zones_of
 from nl2robot.station.station import (
     Station,
-    check_picture,
     remote_station,
     robot_station,
     simulated_station,

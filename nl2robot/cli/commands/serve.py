@@ -20,6 +20,7 @@ from nl2robot.cli.options.world import add_world, world_of
 from nl2robot.cli.run_log import open_log
 from nl2robot.console.app import Console
 from nl2robot.errors import ExitStatus, UserError
+from nl2robot.fleet.address import FleetAddress, parse_fleet
 from nl2robot.paths import authority_file, data_folder, pictures_folder
 from nl2robot.review.review import get_ready
 from nl2robot.run.retention import DAY, kept_for
@@ -112,6 +113,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="none, because a proxy before this server encrypts",
     )
+    fleet = parser.add_argument_group("a fleet, by `nl2robot fleet key` (docs/fleet.md)")
+    fleet.add_argument(
+        "--fleet",
+        metavar="NAME[@ENDPOINT]",
+        help="what this robot is called in its fleet, and where it meets the others: tcp/HOST:PORT"
+        " (several with commas between)",
+    )
+    fleet.add_argument(
+        "--fleet-listen",
+        action="append",
+        default=[],
+        metavar="ENDPOINT",
+        help="where others meet it: tcp/HOST:PORT (more than once: several; default: nowhere)",
+    )
+    fleet.add_argument(
+        "--fleet-find", action="store_true", help="look for the others in this network (multicast)"
+    )
+    fleet.add_argument(
+        "--fleet-config", metavar="FILE", help="Zenoh's own configuration, such as for TLS"
+    )
     parser.add_argument("--open", action="store_true", help="open the console in a browser here")
     parser.add_argument(
         "--speed", type=speed, default=1.0, metavar="X", help="simulated seconds a second"
@@ -129,6 +150,7 @@ def run(options: argparse.Namespace) -> int:
     robot = robot_of(options)
     timing = Timing(settings=_settings(options))
     broker = parse_broker(options.mqtt) if options.mqtt else None
+    fleet = _fleet(options)
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
         stack.enter_context(kept_for(log, options.log_days * DAY))
@@ -151,6 +173,7 @@ def run(options: argparse.Namespace) -> int:
                 start=beginning_of(world, options.clock),
                 timing=timing,
                 broker=broker,
+                fleet=fleet,
             )
             server = stack.enter_context(simulated).server
         else:
@@ -171,6 +194,7 @@ def run(options: argparse.Namespace) -> int:
                 console=Console,
                 timing=timing,
                 broker=broker,
+                fleet=fleet,
             )
             _, server = stack.enter_context(station)
         planners.get_ready()
@@ -178,6 +202,17 @@ def run(options: argparse.Namespace) -> int:
         stack.enter_context(swept(lambda: server.dispatcher.moves))
         server.serve_forever(lambda server: _say_where(server, entrance, options))
     return ExitStatus.OK
+
+
+def _fleet(options: argparse.Namespace) -> FleetAddress | None:
+    """Where the robot meets its fleet, if it has one. Raises `UserError`."""
+    if options.fleet is None:
+        if options.fleet_listen or options.fleet_find or options.fleet_config:
+            raise UserError("A robot of a fleet has a name there: add --fleet NAME.")
+        return None
+    return parse_fleet(
+        options.fleet, tuple(options.fleet_listen), options.fleet_find, options.fleet_config
+    )
 
 
 def _settings(options: argparse.Namespace) -> Settings:

@@ -1,0 +1,188 @@
+"""What a robot has promised its fleet and what it has given to others, in SQLite (`fleet.sqlite`).
+
+Whatever must not happen twice is written before it happens, so that a crash or a kill at any moment
+has nothing done twice. The robot's id lives here as well: who has lost the book is another robot.
+"""
+
+from __future__ import annotations
+
+import os
+import secrets
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Final
+
+import msgspec
+
+from nl2robot.errors import UserError
+from nl2robot.fleet.messages import Stand, ZoneEntry
+from robot_api.errors import cause
+
+FILE: Final = "fleet.sqlite"
+KEPT: Final = 1_000
+"""Offers and errands that are over, the newest."""
+_SCHEMA: Final = """
+CREATE TABLE IF NOT EXISTS own (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE IF NOT EXISTS offers (number INTEGER PRIMARY KEY, id TEXT UNIQUE, offer BLOB);
+CREATE TABLE IF NOT EXISTS errands (number INTEGER PRIMARY KEY, id TEXT UNIQUE, errand BLOB);
+CREATE TABLE IF NOT EXISTS zones (map TEXT, name TEXT, entry BLOB, PRIMARY KEY (map, name));
+"""
+
+
+class Offer(msgspec.Struct, frozen=True, kw_only=True):
+    """Something that a dispatcher offered to this robot."""
+
+    id: str
+    sender: str
+    stand: Stand
+    session: str
+    """Of this robot's process that accepted or began it."""
+    program: str = ""
+    sha256: str = ""
+    sentence: str = ""
+    language: str = "en"
+    by: str = ""
+    reviewed: str = ""
+    why: str | None = None
+    run: int | None = None
+    status: str | None = None
+
+
+class Errand(msgspec.Struct, frozen=True, kw_only=True):
+    """Something that this robot's dispatcher has to have done once, by some robot."""
+
+    id: str
+    program: str
+    sha256: str
+    sentence: str
+    language: str
+    by: str
+    reviewed: str
+    at: float
+    """When it was approved, in seconds since the epoch, by the clock here."""
+    wanted: str | None = None
+    """The id of the only robot that may do it."""
+    state: str = "looking"
+    """looking: for a robot; given: one may begin it; begun; called_off; nobody; else as its run
+    ended, or "broken_off"."""
+    offer: str | None = None
+    robot: str | None = None
+    """The id of the robot that may begin it, does it or did it."""
+    robot_name: str | None = None
+    run: int | None = None
+    message: str | None = None
+    refused: dict[str, str] = {}
+    """Why a robot did not take it, by name."""
+
+    @property
+    def open(self) -> bool:
+        return self.state in ("looking", "given", "begun")
+
+
+_pack = msgspec.msgpack.Encoder().encode
+_offer = msgspec.msgpack.Decoder(Offer).decode
+_errand = msgspec.msgpack.Decoder(Errand).decode
+_zone = msgspec.msgpack.Decoder(ZoneEntry).decode
+
+
+class FleetBook:
+    """The book in one file, or in memory. Any thread may use it. Raises `UserError` wherever the
+    file cannot be used."""
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = Path(path)
+        self._lock = threading.RLock()
+        with self._trouble():
+            if str(path) != ":memory:":
+                self.path.parent.mkdir(parents=True, exist_ok=True)
+                # Before SQLite makes it, so that it is never anybody else's to read.
+                os.close(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o600))
+                self.path.chmod(0o600)
+            self._db = sqlite3.connect(
+                path, check_same_thread=False, isolation_level=None, timeout=5.0
+            )
+            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db.execute("PRAGMA synchronous=FULL")  # a power cut forgets nothing promised
+            self._db.executescript(_SCHEMA)
+            given = ("id", secrets.token_hex(6))
+            self._db.execute("INSERT OR IGNORE INTO own VALUES (?, ?)", given)
+        [[self.robot]] = self._rows("SELECT value FROM own WHERE key = 'id'")
+
+    def close(self) -> None:
+        with self._lock:
+            self._db.close()
+
+    # --- what was offered to this robot
+
+    def offer(self, id: str) -> Offer | None:
+        rows = self._rows("SELECT offer FROM offers WHERE id = ?", id)
+        return _offer(rows[0][0]) if rows else None
+
+    def note(self, offer: Offer) -> Offer:
+        """From now on it stands like that; on disk when this returns."""
+        self._write(
+            "INSERT INTO offers (id, offer) VALUES (?, ?)"
+            " ON CONFLICT (id) DO UPDATE SET offer = excluded.offer",
+            offer.id,
+            _pack(offer),
+        )
+        return offer
+
+    # --- what others are to do
+
+    def errands(self, last: int = KEPT) -> list[Errand]:
+        """The newest first."""
+        return [
+            _errand(row[0])
+            for row in self._rows("SELECT errand FROM errands ORDER BY number DESC LIMIT ?", last)
+        ]
+
+    def keep(self, errand: Errand) -> Errand:
+        """From now on it stands like that; on disk when this returns."""
+        self._write(
+            "INSERT INTO errands (id, errand) VALUES (?, ?)"
+            " ON CONFLICT (id) DO UPDATE SET errand = excluded.errand",
+            errand.id,
+            _pack(errand),
+        )
+        return errand
+
+    # --- keep-out zones
+
+    def zones(self, floor: str) -> list[ZoneEntry]:
+        return [_zone(row[0]) for row in self._rows("SELECT entry FROM zones WHERE map = ?", floor)]
+
+    def keep_zone(self, floor: str, entry: ZoneEntry) -> None:
+        self._write(
+            "INSERT OR REPLACE INTO zones VALUES (?, ?, ?)", floor, entry.name, _pack(entry)
+        )
+
+    def forget(self) -> None:
+        """What is over longest. An offer is forgotten long after anybody could ask for it."""
+        newest = "SELECT number FROM {} ORDER BY number DESC LIMIT ?"
+        for table in ("offers", "errands"):
+            statement = f"DELETE FROM {table} WHERE number NOT IN ({newest.format(table)})"
+            self._write(statement, KEPT)
+
+    # --- inside
+
+    def _rows(self, statement: str, *given: Any) -> list[Any]:
+        with self._lock, self._trouble():
+            return self._db.execute(statement, given).fetchall()
+
+    def _write(self, statement: str, *given: Any) -> None:
+        with self._lock, self._trouble():
+            self._db.execute(statement, given)
+
+    @contextmanager
+    def _trouble(self) -> Iterator[None]:
+        try:
+            yield
+        except (sqlite3.Error, OSError) as error:
+            raise UserError(
+                f"The book of the fleet in {self.path} cannot be used ({cause(error)})."
+                " Check its rights and the disk."
+            ) from error

@@ -1,0 +1,498 @@
+"""A robot that has joined a fleet: the threads around `nl2robot.fleet.hub`."""
+
+from __future__ import annotations
+
+import hashlib
+import logging
+import queue
+import threading
+import time
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final, Protocol
+
+import msgspec
+
+from grammar.language import languages
+from nl2robot import __version__
+from nl2robot.errors import UserError
+from nl2robot.fleet.address import FleetAddress
+from nl2robot.fleet.book import FILE, Errand, FleetBook, Offer
+from nl2robot.fleet.hub import Deeds, Hub
+from nl2robot.fleet.key import fingerprint, fleet_key
+from nl2robot.fleet.messages import About, Answer, Order, Standing, Stop, Stopped, ZoneEntry
+from nl2robot.fleet.network import Network
+from nl2robot.fleet.performing import Performer
+from nl2robot.review.review import digest
+from nl2robot.run.runner import Runner
+from nl2robot.run.state import GOING
+from nl2robot.schedule.findings import News, decoded, findings_of, news
+from nl2robot.schedule.service import waits_for
+from nl2robot.sentences import in_language
+from robot_api.client import Robot
+from robot_api.errors import RobotError
+from sim.world.model import World
+
+TICKS: Final = 0.1
+"""Seconds between two looks at what is to be said."""
+TOLD_EVERY: Final = 0.5
+"""Seconds between two events `fleet`."""
+STOPS_KEPT: Final = 100
+LATEST_RUNS: Final = 200
+TWINS: Final = (
+    "Another robot of the fleet is called “{name}”, too. Give one of them another name (--fleet);"
+    " until then this one is told apart as {id}."
+)
+_log = logging.getLogger(__name__)
+
+
+class Stage(Protocol):
+    """What is needed of a station, `nl2robot.station.part.Backstage`."""
+
+    @property
+    def stop(self) -> Callable[[str], None]: ...
+
+    @property
+    def publish(self) -> Callable[..., None]: ...
+
+    @property
+    def wanted(self) -> Callable[[str], bool]: ...
+
+    def subscribe(
+        self, listener: Callable[[str, Mapping[str, Any]], None]
+    ) -> Callable[[], None]: ...
+
+
+def hash_of(world: World) -> str:
+    """The same for robots that share a map: what its floor and walls are. People, things and what
+    was named or drawn on it count for nothing."""
+    floor = world.map
+    about: list[Any] = [world.name, world.units, world.drawn_walls, world.doors, world.furniture]
+    if floor is not None:
+        about += [floor.resolution, floor.origin, floor.size]
+        with suppress(OSError):
+            about.append(hashlib.sha256(Path(floor.image).read_bytes()).hexdigest())
+    return hashlib.sha256(msgspec.json.encode(about)).hexdigest()[:16]
+
+
+class Fleet:
+    """Belongs to a fleet while it is entered."""
+
+    def __init__(self, address: FleetAddress, runner: Runner, connect: Callable[[], Robot]) -> None:
+        """`connect` opens a client to this robot's own station. Raises `UserError` without a key,
+        or if the book cannot be used."""
+        self.address = address
+        self._runner = runner
+        self._connect = connect
+        key = fleet_key()
+        log = runner.log.path
+        self.book = FleetBook(Path(log).with_name(FILE) if str(log) != ":memory:" else ":memory:")
+        self._lock = threading.RLock()
+        self._heard: queue.SimpleQueue[Callable[[float], None] | None] = queue.SimpleQueue()
+        self._orders: queue.SimpleQueue[tuple[str, Order] | None] = queue.SimpleQueue()
+        self._zones: queue.SimpleQueue[list[ZoneEntry] | None] = queue.SimpleQueue()
+        self._pose: Mapping[str, Any] = {}
+        self._battery: float | None = None
+        self._stage: Stage | None = None
+        self._unsubscribe: Callable[[], None] | None = None
+        self._stopping: dict[str, Stopped | None] = {}
+        self._changed = threading.Condition(self._lock)
+        self._told_at = float("-inf")
+        self._twins: set[str] = set()
+        self.network: Network
+        self.hub = Hub(
+            book=self.book,
+            key=key,
+            about=self._about(),
+            standing=self._standing,
+            where=self._where,
+            send=lambda to, raw, *, urgent: self.network.send(to, raw, urgent=urgent),
+            deeds=Deeds(
+                ordered=lambda sender, order: self._orders.put((sender, order)),
+                stopped=self._stop_for,
+                zoned=self._zones.put,
+                changed=lambda errand: self._changed.notify_all(),
+            ),
+        )
+        self.network = Network(
+            address,
+            fingerprint(key),
+            self.hub.me,
+            self.hub.sealer.session,
+            lambda raw: self._heard.put(lambda now: self.hub.hear(raw, now)),
+            lambda robot, session: self._heard.put(lambda now: self.hub.gone(robot, session)),
+        )
+        self._performer = Performer(self.book, self.hub.sealer.session, self, time.monotonic)
+        self._threads = [
+            threading.Thread(target=target, name=f"fleet {name}", daemon=True)
+            for name, target in (
+                ("hub", self._listen),
+                ("orders", self._perform),
+                ("zones", self._share),
+            )
+        ]
+
+    def watch(self, stage: Stage) -> None:
+        """Belong to this station."""
+        self._stage = stage
+        self._unsubscribe = stage.subscribe(self._on_event)
+
+    def __enter__(self) -> Fleet:
+        self.network.open()
+        for thread in self._threads:
+            thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._heard.put(None)
+        self._orders.put(None)
+        self._zones.put(None)
+        self.network.close()
+        for thread in self._threads:
+            thread.join()
+        if self._unsubscribe is not None:
+            self._unsubscribe()
+        self.book.close()
+
+    @property
+    def name(self) -> str:
+        return self.address.name
+
+    # --- for those who are at this station
+
+    def members(self) -> list[dict[str, Any]]:
+        """The robots of the fleet as this one has heard of them, this one first."""
+        with self._lock:
+            now = time.monotonic()
+            self.hub.note_self(now)
+            twins = {id for ids in self.hub.roll.twins().values() for id in ids}
+            members = sorted(
+                self.hub.roll.members.values(),
+                key=lambda each: (each.id != self.hub.me, each.name, each.id),
+            )
+            return [
+                {
+                    "id": each.id,
+                    "name": each.name,
+                    "here": each.id == self.hub.me,
+                    "known": each.known(now),
+                    "heard": round(max(0.0, now - each.heard), 1),
+                    "left": each.left,
+                    "twin": each.id in twins,
+                    "same_map": each.about is not None and each.about.map == self.hub.about.map,
+                    "about": msgspec.to_builtins(each.about),
+                    "standing": msgspec.to_builtins(each.standing),
+                }
+                for each in members
+            ]
+
+    def errands(self, last: int = 20) -> list[Errand]:
+        return self.book.errands(last)
+
+    def add(self, errand: Errand) -> Errand:
+        """Have it done by the best robot. Raises `UserError` if too much is to be done already."""
+        with self._lock:
+            if self.hub.dispatcher.full:
+                raise UserError(
+                    "The fleet has a hundred things to do already. Wait until some are done."
+                )
+            self.hub.note_self(time.monotonic())
+            return self.hub.dispatcher.add(errand, time.monotonic())
+
+    def call_off(self, id: str) -> Errand | None:
+        with self._lock:
+            return self.hub.dispatcher.call_off(id)
+
+    def one(self, name: str) -> str:
+        """The id of the robot of that name or id. Raises `UserError`."""
+        with self._lock:
+            self.hub.note_self(time.monotonic())
+            found = self.hub.roll.called(name)
+        if not found:
+            raise UserError(
+                f"There is no robot “{name}” in the fleet. `nl2robot fleet` lists those there are."
+            )
+        if len(found) > 1:
+            ids = ", ".join(sorted(each.id for each in found))
+            raise UserError(
+                f"Several robots are called “{name}” ({ids}). Name one by its id, and give one of"
+                " them another name."
+            )
+        return found[0].id
+
+    def wait(self, id: str, timeout: float, given_up: Callable[[], bool]) -> Errand:
+        """Until an errand is over, or the time is up. Raises `UserError` if there is none."""
+        ends = time.monotonic() + timeout
+        with self._changed:
+            while True:
+                found = next((each for each in self.book.errands() if each.id == id), None)
+                if found is None:
+                    raise UserError(
+                        f"The fleet knows nothing of {id} (any more)."
+                        " `nl2robot fleet` lists what it has to do."
+                    )
+                left = ends - time.monotonic()
+                if not found.open or left <= 0 or given_up():
+                    return found
+                self._changed.wait(min(left, 0.5))
+
+    def stop(self, robots: list[str] | None, because: str) -> list[dict[str, Any]]:
+        """Stop these, or all; what each says to that, within some seconds."""
+        with self._lock:
+            self.hub.note_self(time.monotonic())
+            known = dict(self.hub.roll.members)
+            told = [each for each in known if robots is None or each in robots]
+            made = self.hub.stops.begin(told, because, time.monotonic())
+        made.over.wait(10.0)
+        with self._lock:
+            results = dict(made.results)
+        return [
+            {
+                "id": each,
+                "name": known[each].name,
+                "confirmed": each in results and results[each].confirmed,
+                "answered": each in results,
+                "because": results[each].because if each in results else "",
+            }
+            for each in told
+        ]
+
+    # --- what the robot does for its fleet (`nl2robot.fleet.performing.Means`)
+
+    def consider(self, offer: Offer) -> str | None:
+        waits = waits_for(self._runner.present.state, time.time(), self._battery)
+        if waits is not None:
+            return f"It is not free ({waits})."
+        if digest(offer.program) != offer.sha256:
+            return "The program is not the one that was approved."
+        try:
+            approved = decoded(offer.reviewed)
+            review = self._runner.check(offer.program, offer.language)
+        except (msgspec.MsgspecError, UserError, RobotError) as error:
+            return str(error)
+        if not review.acceptable:
+            return next(each.message for each in review.findings if each.severity == "error")
+        new = [
+            each
+            for each in news(approved, findings_of(review))
+            # Where nobody could try it, its places stand in the program alone.
+            if each.kind != "place" or approved.stood is not None or approved.places
+        ]
+        return _told(new[0]) if new else None
+
+    def begin(self, offer: Offer) -> int:
+        approval = self._runner.approve(
+            offer.program,
+            offer.sha256,
+            offer.by,
+            utterance=offer.sentence,
+            language=offer.language,
+            insists=True,  # the review just now found what was approved
+        )
+        return self._runner.run(approval.id)
+
+    def came(self, run: int) -> tuple[str | None, str | None]:
+        present = self._runner.state()
+        if present is not None and present.run == run:
+            return (None, None) if present.state in GOING else (present.state, present.message)
+        found = self._runner.log.run(run)
+        if found is None or found.status is None:
+            return "broken_off", None
+        return found.status, found.message
+
+    def lost(self, offer: Offer) -> int | None:
+        for run in self._runner.log.runs(LATEST_RUNS):
+            if run.sha256 == offer.sha256 and run.approved_by == offer.by:
+                return run.id
+        return None
+
+    # --- inside
+
+    def _about(self) -> About:
+        knowledge = self._runner.knowledge
+        has = knowledge.capabilities
+        return About(
+            name=self.address.name,
+            kind=has.kind if has is not None else "",
+            methods=has.methods if has is not None else (),
+            world=knowledge.world.name,
+            map=hash_of(knowledge.world),
+            version=__version__,
+        )
+
+    def _standing(self) -> Standing:
+        state, pose = self._runner.present.state, self._pose
+        waits = waits_for(state, time.time(), self._battery)
+        known = all(isinstance(pose.get(each), int | float) for each in ("x", "y", "theta"))
+        return Standing(
+            state=state.state,
+            x=round(pose["x"], 2) if known else None,
+            y=round(pose["y"], 2) if known else None,
+            theta=round(pose["theta"], 0) if known else None,
+            place=pose.get("place"),
+            battery=round(self._battery) if self._battery is not None else None,
+            charging=state.charging,
+            run=state.run,
+            because=state.because,
+            driven_by=state.driven_by,
+            waits=waits,
+        )
+
+    def _where(self, place: str) -> tuple[float, float] | None:
+        found = self._runner.knowledge.world.place(place)
+        return (found.pose.x, found.pose.y) if found is not None and found.pose else None
+
+    def _on_event(self, kind: str, data: Mapping[str, Any]) -> None:
+        if kind == "pose":
+            self._pose = data
+        elif kind == "battery" and isinstance(data.get("percent"), int | float):
+            self._battery = float(data["percent"])
+
+    def _listen(self) -> None:
+        """All that the hub hears and says, in one thread."""
+        ticked = float("-inf")
+        while True:
+            try:
+                heard = self._heard.get(timeout=max(0.0, ticked + TICKS - time.monotonic()))
+                if heard is None:
+                    return
+            except queue.Empty:
+                heard = None
+            now = time.monotonic()
+            try:
+                with self._lock:
+                    if heard is not None:
+                        heard(now)
+                    if now - ticked >= TICKS:
+                        ticked = now
+                        self.hub.tick(now)
+                if now == ticked:
+                    self._tell(now)
+            except UserError as error:  # a full disk: what is not in the book is not done
+                _log.warning("%s", error)
+            except Exception:  # noqa: BLE001 - the others are still listened to
+                _log.exception("the fleet is not looked after")
+
+    def _tell(self, now: float) -> None:
+        """Those who look on, and the people here where two robots have one name."""
+        stage = self._stage
+        if stage is None or now - self._told_at < TOLD_EVERY:
+            return
+        self._told_at = now
+        with self._lock:
+            twins = set(self.hub.roll.twins().get(self.name, ()))
+        if twins - self._twins:
+            self._notify(TWINS.format(name=self.name, id=self.hub.me))
+        self._twins = twins
+        if stage.wanted("fleet"):
+            told = {"members": self.members(), "errands": msgspec.to_builtins(self.errands())}
+            stage.publish("fleet", told)
+
+    def _notify(self, sentence: str) -> None:
+        """A notice on every page of the console."""
+        assert self._stage is not None
+        _log.warning("%s", sentence)
+        said = {code: in_language(sentence, code) or sentence for code in languages()}
+        data = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
+        self._stage.publish("notice", {**data, "occurrence": None, "parts": {}, "told": said})
+
+    def _perform(self) -> None:
+        """Orders, one after the other: a review takes its time."""
+        while True:
+            given = self._orders.get()
+            if given is None:
+                return
+            sender, order = given
+            try:
+                answer: Answer = self._performer.answer(sender, order)
+            except UserError as error:
+                _log.warning("%s", error)
+                continue
+            except Exception:  # noqa: BLE001 - the next order is answered
+                _log.exception("an order is not answered")
+                continue
+            with self._lock:
+                self.hub.say("answer", answer, sender)
+
+    def _stop_for(self, sender: str, stop: Stop) -> None:
+        """Once for each stop, however often it is said; each time it is answered how it stands."""
+        if stop.stop in self._stopping:
+            answer = self._stopping[stop.stop]
+            if answer is not None:
+                self.hub.say("stopped", answer, sender)
+            return
+        self._stopping[stop.stop] = None
+        while len(self._stopping) > STOPS_KEPT:
+            del self._stopping[next(iter(self._stopping))]
+
+        def work() -> None:
+            assert self._stage is not None
+            try:
+                self._stage.stop(stop.because)
+                answer = Stopped(stop.stop, True)
+            except RobotError as error:
+                answer = Stopped(stop.stop, False, str(error))
+            with self._lock:
+                self._stopping[stop.stop] = answer
+                self.hub.say("stopped", answer, sender)
+
+        threading.Thread(target=work, name="fleet stop", daemon=True).start()
+
+    def _share(self) -> None:
+        """Keep-out zones, through this station's own wire, as anybody's client would."""
+        try:
+            robot = self._connect()
+            zones = robot.request("zones.list", {})
+        except RobotError:  # a station without a map to draw on
+            return
+        with robot:
+            self._ask_how_it_is(robot)
+            robot.subscribe("zones", lambda kind, data: self._drawn(data["zones"]))
+            self._drawn(zones)
+            while True:
+                entries = self._zones.get()
+                if entries is None:
+                    return
+                for entry in entries:
+                    self._draw(robot, entry)
+
+    def _ask_how_it_is(self, robot: Robot) -> None:
+        """A robot that stands still since before we came has told nothing."""
+        with suppress(RobotError):
+            where = robot.location()
+            pose = {"x": where.x, "y": where.y, "theta": where.theta, "place": where.place}
+            self._pose = self._pose or pose
+        with suppress(RobotError):
+            percent = robot.battery()
+            self._battery = self._battery if self._battery is not None else percent
+
+    def _drawn(self, zones: list[dict[str, Any]]) -> None:
+        drawn = {
+            each["name"]: tuple((x, y) for x, y in each["polygon"])
+            for each in zones
+            if each["removable"]
+        }
+        with self._lock:
+            if self.hub.zones.drawn(drawn, {}):
+                self.hub.tell_zones()
+
+    def _draw(self, robot: Robot, entry: ZoneEntry) -> None:
+        who = f"fleet, {entry.robot}"
+        try:
+            if entry.polygon is None:
+                robot.request("zones.remove", {"name": entry.name, "who": who})
+            else:
+                about = {"name": entry.name, "polygon": entry.polygon, "who": who}
+                robot.request("zones.set", msgspec.to_builtins(about))
+        except RobotError as error:
+            _log.warning("The zone %r of the fleet is not drawn here: %s", entry.name, error)
+
+
+def _told(new: News) -> str:
+    said = {
+        "place": "Here it would also work at “{}”.",
+        "closed": "Here it does not reach “{}”.",
+        "fails": "Here it does not come to its end: {}",
+    }
+    return said.get(new.kind, "{}").format(new.text)

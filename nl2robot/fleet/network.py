@@ -1,0 +1,143 @@
+"""The fleet's network: Zenoh, in a thin shell that knows nothing of what the messages mean.
+
+    nl2robot/FLEET/all/ROBOT            what a robot says to all
+    nl2robot/FLEET/to/ROBOT             what is said to one
+    nl2robot/FLEET/alive/ROBOT/SESSION  a liveliness token, while that process is reached
+
+FLEET is the fingerprint of the key, so fleets with other keys do not even hear each other. Each
+robot passes on what others say (Zenoh's mode "router"), so it is enough that all are connected
+somehow; a configuration of one's own may say otherwise.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
+
+from nl2robot.errors import UserError
+from nl2robot.fleet.address import FleetAddress
+from robot_api.errors import cause
+
+if TYPE_CHECKING:
+    from zenoh import Config, Session
+
+ROOT: Final = "nl2robot"
+RETRY: Final = {"period_init_ms": 500, "period_max_ms": 2000, "period_increase_factor": 2}
+"""How often somebody who is away is called."""
+
+
+class Network:
+    """A robot's connection to the others, which comes back by itself.
+
+    `heard(raw)` and `gone(robot, session)` are called in its threads, which they must not keep.
+    """
+
+    def __init__(
+        self,
+        address: FleetAddress,
+        fleet: str,
+        robot: str,
+        session: str,
+        heard: Callable[[bytes], None],
+        gone: Callable[[str, str], None],
+    ) -> None:
+        """Nothing happens before `open`."""
+        self._address = address
+        self._fleet = f"{ROOT}/{fleet}"
+        self._robot = robot
+        self._alive = f"{self._fleet}/alive/{robot}/{session}"
+        self._heard = heard
+        self._gone = gone
+        self._session: Session | None = None
+        self._declared: list[Any] = []
+
+    def open(self) -> None:
+        """Join. Raises `UserError` if that cannot be: no Zenoh, a port that is taken."""
+        try:
+            import zenoh
+        except ImportError as error:
+            raise UserError(
+                "A fleet needs Zenoh, which is not installed. Install it by"
+                " `pip install 'nl2robot[fleet]'`."
+            ) from error
+
+        from zenoh import SampleKind
+
+        def sample(sample: Any) -> None:
+            self._heard(sample.payload.to_bytes())
+
+        def alive(sample: Any) -> None:
+            if sample.kind == SampleKind.DELETE:
+                *_, robot, session = str(sample.key_expr).split("/")
+                self._gone(robot, session)
+
+        try:
+            session = self._session = zenoh.open(self._config(zenoh.Config))
+            self._declared = [
+                session.declare_subscriber(f"{self._fleet}/all/*", sample),
+                session.declare_subscriber(f"{self._fleet}/to/{self._robot}", sample),
+                session.liveliness().declare_subscriber(f"{self._fleet}/alive/*/*", alive),
+                session.liveliness().declare_token(self._alive),
+            ]
+        except zenoh.ZError as error:
+            self.close()
+            raise UserError(
+                f"The fleet cannot be joined ({_first(error)}). Check --fleet, --fleet-listen and"
+                " --fleet-config."
+            ) from error
+
+    def close(self) -> None:
+        session, self._session = self._session, None
+        self._declared = []
+        if session is not None:
+            session.close()  # type: ignore[no-untyped-call]
+
+    def send(self, to: str, raw: bytes, *, urgent: bool) -> None:
+        """To one robot, or to all; lost if nobody is reached, or too much waits to be sent."""
+        session = self._session
+        if session is None:
+            return
+        from zenoh import CongestionControl, Priority, ZError
+
+        where = f"{self._fleet}/to/{to}" if to else f"{self._fleet}/all/{self._robot}"
+        try:
+            session.put(
+                where,
+                raw,
+                congestion_control=CongestionControl.DROP,
+                priority=Priority.REAL_TIME if urgent else Priority.DATA,
+                express=urgent or bool(to),
+            )
+        except ZError:  # as if it were lost on the way, of which all that is said here takes care
+            return
+
+    def _config(self, made: type[Config]) -> Config:
+        address = self._address
+        if address.config is not None:
+            try:
+                config = made.from_file(address.config)
+            except Exception as error:  # whatever Zenoh says of it
+                raise UserError(
+                    f"The configuration of Zenoh in {address.config} cannot be used"
+                    f" ({_first(error)}). Check the file."
+                ) from error
+        else:
+            config = made()
+            config.insert_json5("mode", '"router"')
+            config.insert_json5("scouting/multicast/enabled", json.dumps(address.finds))
+            # Nobody is connected to whom nobody has named.
+            config.insert_json5("scouting/gossip/enabled", json.dumps(address.finds))
+            config.insert_json5("connect/timeout_ms", "0")
+            config.insert_json5("connect/exit_on_failure", "false")
+            config.insert_json5("connect/retry", json.dumps(RETRY))
+            config.insert_json5("listen/endpoints", "[]")
+        for key, endpoints in (("listen", address.listens), ("connect", address.connects)):
+            if endpoints:
+                config.insert_json5(f"{key}/endpoints", json.dumps(endpoints))
+        return config
+
+
+def _first(error: Exception) -> str:
+    """What Zenoh says, without the places in its source."""
+    return cause(error).split(" at /")[0].strip(" .")
