@@ -147,11 +147,11 @@ class Dispatcher:
             each.robot for each in self._open.values() if each.state == "given"
         }
         busy |= {each.offered[1] for each in self._hands.values() if each.offered is not None}
-        robot = next((each for each in best if each not in busy), None)
-        if robot is not None:
-            hand.offered = (secrets.token_hex(8), robot, now)
+        free = next((each for each in best if each not in busy), None)
+        if free is not None:
+            hand.offered = (secrets.token_hex(8), free, now)
             hand.said = now
-            self._say(robot, _offer(errand, hand.offered[0]))
+            self._say(free, _offer(errand, hand.offered[0]))
 
     def _decided(self, errand: Errand, hand: _Hand, robot: str, answer: Answer, now: float) -> None:
         """What a robot says to an offer for which it was not told to go."""

@@ -448,14 +448,20 @@ class Fleet:
             return
         with robot:
             self._ask_how_it_is(robot)
-            robot.subscribe("zones", lambda kind, data: self._drawn(data["zones"]))
-            self._drawn(zones)
+            robot.subscribe("zones", lambda kind, data: self._zones.put([]))
+            undrawn: set[str] = set()
             while True:
+                # Asked for after all that was heard is drawn: what is not there was removed.
+                self._drawn(zones, undrawn)
                 entries = self._zones.get()
                 if entries is None:
                     return
                 for entry in entries:
-                    self._draw(robot, entry)
+                    (undrawn.discard if self._draw(robot, entry) else undrawn.add)(entry.name)
+                try:
+                    zones = robot.request("zones.list", {})
+                except RobotError:  # this station ends
+                    return
 
     def _ask_how_it_is(self, robot: Robot) -> None:
         """A robot that stands still since before we came has told nothing."""
@@ -467,17 +473,18 @@ class Fleet:
             percent = robot.battery()
             self._battery = self._battery if self._battery is not None else percent
 
-    def _drawn(self, zones: list[dict[str, Any]]) -> None:
+    def _drawn(self, zones: list[dict[str, Any]], undrawn: set[str]) -> None:
         drawn = {
             each["name"]: tuple((x, y) for x, y in each["polygon"])
             for each in zones
             if each["removable"]
         }
         with self._lock:
-            if self.hub.zones.drawn(drawn, {}):
+            if self.hub.zones.drawn(drawn, undrawn):
                 self.hub.tell_zones()
 
-    def _draw(self, robot: Robot, entry: ZoneEntry) -> None:
+    def _draw(self, robot: Robot, entry: ZoneEntry) -> bool:
+        """Whether it is so here now."""
         who = f"fleet, {entry.robot}"
         try:
             if entry.polygon is None:
@@ -487,6 +494,8 @@ class Fleet:
                 robot.request("zones.set", msgspec.to_builtins(about))
         except RobotError as error:
             _log.warning("The zone %r of the fleet is not drawn here: %s", entry.name, error)
+            return entry.polygon is None  # it was not there
+        return True
 
 
 def _told(new: News) -> str:

@@ -106,7 +106,6 @@ class ZoneEntry(msgspec.Struct, frozen=True, kw_only=True):
     """The id of the robot at which it was done."""
     polygon: Polygon | None
     """None: it was removed."""
-    who: str = ""
 
 
 class Zones(msgspec.Struct, frozen=True):

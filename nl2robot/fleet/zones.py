@@ -8,7 +8,7 @@ come, all robots end up with the same zones; what was removed stays known as rem
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 import msgspec
 
@@ -39,11 +39,12 @@ class SharedZones:
             self._digest = hashlib.sha256(msgspec.json.encode(known)).hexdigest()[:8]
         return self._digest
 
-    def drawn(self, zones: Mapping[str, Polygon], who: Mapping[str, str]) -> bool:
-        """These are the zones that are drawn here now; whether the others have to be told."""
+    def drawn(self, zones: Mapping[str, Polygon], undrawn: Collection[str] = ()) -> bool:
+        """These are the zones that are drawn here now; whether the others have to be told. Those
+        of the others that could not be drawn here are `undrawn`: nobody removed them."""
         changed = False
         gone = {name for name, entry in self._entries.items() if entry.polygon is not None}
-        for name in (gone - zones.keys()) | zones.keys():
+        for name in (gone - zones.keys() - set(undrawn)) | zones.keys():
             kept, polygon = self._entries.get(name), zones.get(name)
             if kept is not None and _same(kept.polygon, polygon):
                 continue
@@ -54,7 +55,6 @@ class SharedZones:
                     count=count,
                     robot=self._robot,
                     polygon=polygon,
-                    who=who.get(name, ""),
                 )
             )
             changed = True
