@@ -25,6 +25,8 @@ RUNNING: Final[Mapping[str, str]] = {
     "NL2ROBOT_USER": "who approves, for the log, at this terminal; the login name if it is not set",
     "NL2ROBOT_ASK_ALWAYS": "anything but nothing: `run` and `chat` ask also before a program that"
     " only looks or tells, as `--ask-always`",
+    "NL2ROBOT_FLEET_KEY": "the key of the robot's fleet, `serve --fleet`, where it is not in"
+    " `fleet.key` of the data folder",
     "NL2ROBOT_MQTT_PASSWORD": "the password for the house's MQTT broker, `serve --mqtt`",
     "NL2ROBOT_ROBOT_PASSWORD": "the password of the robot's own login, which no command line should"
     " show",

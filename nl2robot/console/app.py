@@ -25,7 +25,7 @@ STATIC: Final = Path(__file__).parent / "static"
 PARTS: Final = (
     *("desk.page", "floor.scene", "floor.zones", "floor.places", "floor.goals"),
     *("floor.localising", "drive.services", "face.codes", "face.camera", "drive.page"),
-    *("face.page", "runs.page", "routines.page", "schedule.page", "door", "devices"),
+    *("face.page", "runs.page", "routines.page", "schedule.page", "fleet.page", "door", "devices"),
 )
 """The modules of our parts; each has `part(backstage) -> Part`."""
 

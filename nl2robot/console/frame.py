@@ -37,6 +37,10 @@ PAGES: Final = {
     ),
     "schedule": ("/schedule", "M4 6h16v14H4zM4 10h16M8 3v4M16 3v4M12 13v3l2 1"),
     "runs": ("/runs", "M8 6h13M8 12h13M8 18h13M3.5 6h.01M3.5 12h.01M3.5 18h.01"),
+    "fleet": (
+        "/fleet",
+        "M5 16h6v4H5zM13 16h6v4h-6zM9 6h6v4H9zM12 10v3M8 16v-3h8v3",
+    ),
     "face": ("/face", "M4 4h16v16H4zM9 10h.01M15 10h.01M8.5 14.5c2 2 5 2 7 0"),
 }
 """The pages, each with its address and the line of its icon, in a square of 24."""
@@ -89,7 +93,12 @@ def frame(backstage: Backstage, page: str) -> Iterator[Visit]:
     ui.add_head_html(_head(visitor, words, name))
     ui.add_body_html(_header(page, name, visitor, words, backstage))
     with ui.element("div").props('id="main" tabindex="-1"').classes(f"page page-{page}"):
-        if page not in ("runs", "routines", "schedule"):  # whose pages have headings of their own
+        if page not in (
+            "runs",
+            "routines",
+            "schedule",
+            "fleet",
+        ):  # whose pages have headings of their own
             ui.html(f'<h1 class="sr">{escape(title)}</h1>', sanitize=False)
         yield visit
 
@@ -139,7 +148,11 @@ def _header(
     def said(key: str) -> str:
         return escape(words[key], quote=True)
 
-    shown = [(key, address, line, words[key]) for key, (address, line) in PAGES.items()]
+    shown = [
+        (key, address, line, words[key])
+        for key, (address, line) in PAGES.items()
+        if key != "fleet" or backstage.fleet is not None
+    ]
     for link in backstage.links:
         title = texts_of(link.texts, visitor.language)["title"]
         shown.append((link.name, link.address, escape(link.icon, quote=True), title))

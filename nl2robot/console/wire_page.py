@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from nl2robot.console.app import Console
+from nl2robot.fleet.address import FleetAddress
 from nl2robot.run.runlog import RunLog
 from nl2robot.station.accounts import Accounts
 from nl2robot.station.entrance import Entrance
@@ -45,6 +46,7 @@ GROUPS: Final[Mapping[str, str]] = {
     "routines": "Routines",
     "schedule": "Appointments",
     "proposal": "Proposals",
+    "fleet": "The fleet (where it has joined one)",
     "scene": "The floor",
     "places": "Places",
     "zones": "Keep-out zones",
@@ -71,6 +73,7 @@ def served() -> tuple[Document, Mapping[str, Service]]:
             log,
             entrance=Entrance(accounts, None, "127.0.0.1"),
             console=Console,
+            fleet=FleetAddress("ward", key=b"of this page, and of no fleet"),
         ) as station,
     ):
         server = station.server

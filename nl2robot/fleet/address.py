@@ -11,7 +11,7 @@ told to.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -38,6 +38,8 @@ class FleetAddress:
     """Whether it looks for others by multicast."""
     config: Path | None = None
     """Zenoh's own configuration, for what is not said here: TLS, roles."""
+    key: bytes | None = field(default=None, repr=False)
+    """None: this machine's (`nl2robot.fleet.key`)."""
 
 
 def parse_fleet(

@@ -85,7 +85,7 @@ class Fleet:
         self.address = address
         self._runner = runner
         self._connect = connect
-        key = fleet_key()
+        key = address.key or fleet_key()
         log = runner.log.path
         self.book = FleetBook(Path(log).with_name(FILE) if str(log) != ":memory:" else ":memory:")
         self._lock = threading.RLock()

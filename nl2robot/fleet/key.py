@@ -49,9 +49,9 @@ def fleet_key() -> bytes:
         ) from error
 
 
-def make_key() -> Path:
+def make_key(file: Path | None = None) -> Path:
     """Make a key, if there is none yet; returns its file. Raises `UserError`."""
-    file = key_file()
+    file = file or key_file()
     made(file.parent)
     try:
         handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)

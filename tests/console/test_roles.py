@@ -8,6 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from nl2robot.fleet.key import make_key
 from nl2robot.station.accounts import Accounts
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, RobotError
@@ -17,7 +18,7 @@ from tests.console.conftest import Look, Served, serving
 from tests.console.test_looks import READY
 
 FACE = {
-    *("robot.stop", "robot.capabilities", "rpc.discover", "program.stop"),
+    *("robot.stop", "robot.capabilities", "rpc.discover", "program.stop", "fleet.stop"),
     *("face.state", "face.site", "face.here", "face.touch", "face.page", "face.did"),
     *(
         "sentence.told",
@@ -42,6 +43,7 @@ OBSERVER = {
     *("program.phrases", "program.wait", "program.state", "program.list"),
     *("program.answer", "program.unfinished"),
     *("proposal.list", "proposal.show", "proposal.wait"),
+    *("fleet.list", "fleet.wait", "fleet.stop"),
 }
 ASSISTANT = OBSERVER | {
     *("program.translate", "program.check", "proposal.make", "proposal.withdraw"),
@@ -53,6 +55,7 @@ PAGES = {
     "/runs": {"observer", "assistant", "operator", "administrator"},
     "/routines": {"observer", "assistant", "operator", "administrator"},
     "/schedule": {"observer", "assistant", "operator", "administrator"},
+    "/fleet": {"observer", "assistant", "operator", "administrator"},
     "/devices": {"operator", "administrator"},
     "/face": set(ROLES),
     "/static/wire.js": set(ROLES),
@@ -68,7 +71,8 @@ NO_SUCH = {"no such parameter": 1}
 @pytest.fixture(scope="module")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     home = tmp_path_factory.mktemp("house")
-    with serving(home, "--host", "0.0.0.0") as served:
+    make_key(home / "fleet.key")
+    with serving(home, "--host", "0.0.0.0", "--fleet", "ward a") as served:
         port = served.address.rpartition(":")[2]
         yield Served(f"127.0.0.1:{port}", served.process, home, served.said)
 

@@ -1,0 +1,195 @@
+"""The arguments of `nl2robot fleet`, and what each action does."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import msgspec
+
+from nl2robot.cli.operator import Operator
+from nl2robot.cli.options.robot import add_ca, trust
+from nl2robot.cli.options.sentence import add_language, add_planner
+from nl2robot.cli.options.values import read_program, user_name, words
+from nl2robot.cli.terminal import Terminal
+from nl2robot.errors import ExitStatus, UserError
+from nl2robot.fleet.book import Errand
+from nl2robot.fleet.key import fingerprint, fleet_key, make_key
+from nl2robot.fleet.wire import WAITS, Told
+from nl2robot.plain import visible
+from nl2robot.station.clients import client_of
+from robot_api.client import Robot
+from robot_api.errors import InvalidCall
+from robot_api.server import DEFAULT_PORT
+
+ACTIONS: Final = ("list", "run", "stop", "key")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("action", choices=ACTIONS, nargs="?", default="list")
+    parser.add_argument(
+        "words",
+        nargs="?",
+        type=words,
+        metavar="WORDS|ROBOT",
+        help="run: what one of them should do; stop: the only one to be stopped",
+    )
+    parser.add_argument("--program", metavar="FILE", help="run: this program instead of words")
+    parser.add_argument("--on", metavar="ROBOT", help="run: by this one, not by the best")
+    parser.add_argument("--json", action="store_true", help="list, stop: as JSON")
+    here = f"ws://127.0.0.1:{DEFAULT_PORT}"
+    parser.add_argument(
+        "--robot",
+        default=here,
+        metavar="ADDRESS",
+        help=f"the server of any robot of the fleet (default: {here})",
+    )
+    add_ca(parser)
+    parser.add_argument("--token", help="the token that the robot server printed at its start")
+    add_language(parser)
+    add_planner(parser)
+
+
+def run(options: argparse.Namespace) -> int:
+    terminal = Terminal(language=options.lang)
+    if options.action == "key":
+        return _key(terminal)
+    trust(options)
+    with client_of(options.robot, options.token) as robot:
+        _check_fleet(robot, options.robot)
+        if options.action == "run":
+            return _run(options, terminal, Operator(robot, user_name()))
+        if options.action == "stop":
+            return _stop(options, terminal, robot)
+        _list(options, terminal, robot)
+        return ExitStatus.OK
+
+
+def _check_fleet(robot: Robot, address: str) -> None:
+    try:
+        robot.request("fleet.list", {})
+    except InvalidCall as error:  # it knows no such method
+        raise UserError(
+            f"The robot at {address} has joined no fleet. Serve it with --fleet NAME."
+        ) from error
+
+
+def _key(terminal: Terminal) -> int:
+    file = make_key()
+    told = terminal.words["fleet_key"].format(file=file, print=fingerprint(fleet_key()))
+    terminal.console.print(told, soft_wrap=True, markup=False)
+    return ExitStatus.OK
+
+
+def _list(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> None:
+    found = robot.request("fleet.list", {})
+    if options.json:
+        print(json.dumps(found, ensure_ascii=False))
+        return
+    words = terminal.words
+    table = terminal.table(*words["fleet"])
+    for each in found["members"]:
+        standing = each["standing"] or {}
+        table.add_row(
+            visible(_called(each)),
+            _state(each, words),
+            visible(standing.get("place") or "") if each["known"] else "",
+            _percent(standing) if each["known"] else "",
+            words["fleet_here"] if each["here"] else f"{each['heard']:.0f} s",
+        )
+    terminal.console.print(table, markup=False)
+    errands = msgspec.convert(found["errands"], list[Errand])
+    if errands:
+        terminal.console.print()
+        table = terminal.table(*words["errands"])
+        for errand in errands:
+            table.add_row(
+                visible(errand.sentence or errand.program.splitlines()[0]),
+                _errand_state(errand, words),
+                visible(errand.robot_name or ""),
+                visible(errand.by),
+            )
+        terminal.console.print(table, markup=False)
+
+
+def _called(member: Mapping[str, Any]) -> str:
+    """Two of one name are told apart."""
+    return f"{member['name']} ({member['id']})" if member["twin"] else str(member["name"])
+
+
+def _state(member: Mapping[str, Any], words: Mapping[str, Any]) -> str:
+    if not member["known"]:
+        return str(words["fleet_unknown"])
+    state = member["standing"]["state"]
+    return str(words["fleet_states"].get(state, state))
+
+
+def _percent(standing: Mapping[str, Any]) -> str:
+    battery = standing.get("battery")
+    return f"{battery:.0f} %" if battery is not None else ""
+
+
+def _errand_state(errand: Errand, words: Mapping[str, Any]) -> str:
+    return str(words["errand_states"].get(errand.state, errand.state))
+
+
+def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) -> int:
+    words, show = terminal.words, terminal.console.print
+    sentence = options.words or ""
+    if options.program is not None:
+        program = read_program(options.program)
+    elif sentence:
+        translated = operator.translate(sentence, options.lang, options.planner)
+        if translated.program is None:
+            raise UserError(
+                "That could not be turned into a program. `nl2robot explain` shows why.",
+                ExitStatus.NOT_UNDERSTOOD,
+            )
+        program = translated.program
+    else:
+        raise UserError("Say what one of the robots should do, or give a --program.")
+    review = operator.check(program, options.lang)
+    terminal.show_review(review)
+    decision, *_ = terminal.decide(review)
+    if decision != "approve":
+        show(words["rejected"], markup=False)
+        return ExitStatus.NOT_APPROVED
+    given = {
+        "program": program,
+        "sha256": review.sha256,
+        "by": operator.name,
+        "sentence": sentence,
+        "language": options.lang,
+        **({"robot": options.on} if options.on else {}),
+    }
+    errand = msgspec.convert(operator.robot.request("fleet.run", given), Errand)
+    robot = None
+    while errand.open:
+        if errand.robot_name is not None and errand.robot_name != robot:
+            robot = errand.robot_name
+            show(visible(words["fleet_given"].format(robot=robot)), markup=False)
+        waits = {"errand": errand.id, "timeout": 1.0 if robot is None else WAITS}
+        errand = msgspec.convert(operator.robot.request("fleet.wait", waits), Errand)
+    if errand.robot_name is not None and robot is None:
+        show(visible(words["fleet_given"].format(robot=errand.robot_name)), markup=False)
+    for name, why in errand.refused.items():
+        show(visible(f"{name}: {why}"), markup=False)
+    told = _errand_state(errand, words)
+    show(visible(f"{told}. {errand.message or ''}".strip()), markup=False)
+    return ExitStatus.OK if errand.state == "done" else ExitStatus.FAILED
+
+
+def _stop(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> int:
+    given = {"robot": options.words} if options.words else {}
+    told = msgspec.convert(robot.request("fleet.stop", given), Sequence[Told])
+    if options.json:
+        print(json.dumps(msgspec.to_builtins(told), ensure_ascii=False))
+    else:
+        table = terminal.table(*terminal.words["fleet_stop"])
+        for each in told:
+            how = "stands" if each.confirmed else "moves" if each.answered else "silent"
+            table.add_row(visible(each.name), terminal.words["fleet_stops"][how])
+        terminal.console.print(table, markup=False)
+    return ExitStatus.OK if all(each.confirmed for each in told) else ExitStatus.FAILED

@@ -1,0 +1,1 @@
+"""The page of the fleet: all robots on one map, and a stop for all."""
