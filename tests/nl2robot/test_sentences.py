@@ -54,6 +54,7 @@ SAYING = {
     "nl2robot/building": {"BadBroker"},
     "nl2robot/schedule": {"UserError", "BadRhythm", "BadTrigger", "BookError", "AccessDenied"},
     "nl2robot/proposals": {"UserError", "AccessDenied"},
+    "nl2robot/fleet": {"UserError", "BadFleet", "AccessDenied"},
     "nl2robot/station/station.py": {"UserError"},
     "nl2robot/models/catalogue.py": {"ModelError"},
     "nl2robot/translate/planners.py": {"UserError"},
