@@ -81,7 +81,7 @@ coverage: $(STAMP) browser broker node java
 # What takes too long for every change: whole samples of what people say, a server killed 200 times, and all attacks, an hour of
 # them unless MINUTES says otherwise.
 soak: $(STAMP)
-	$(BIN)/pytest -n auto --soak --timeout 3600 tests/errands tests/schedule/test_kills.py
+	$(BIN)/pytest -n auto --soak --timeout 3600 tests/errands tests/schedule/test_kills.py tests/fleet
 	$(MAKE) attacks
 
 MINUTES ?= 60

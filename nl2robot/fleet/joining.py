@@ -36,7 +36,7 @@ from sim.world.model import World
 
 TICKS: Final = 0.1
 """Seconds between two looks at what is to be said."""
-TOLD_EVERY: Final = 0.5
+TOLD_EVERY: Final = 0.2
 """Seconds between two events `fleet`."""
 STOPS_KEPT: Final = 100
 LATEST_RUNS: Final = 200

@@ -128,7 +128,7 @@ class Network:
             config.insert_json5("scouting/multicast/enabled", json.dumps(address.finds))
             # Nobody is connected to whom nobody has named.
             config.insert_json5("scouting/gossip/enabled", json.dumps(address.finds))
-            config.insert_json5("connect/timeout_ms", "0")
+            config.insert_json5("connect/timeout_ms", "-1")  # it is tried for ever, meanwhile
             config.insert_json5("connect/exit_on_failure", "false")
             config.insert_json5("connect/retry", json.dumps(RETRY))
             config.insert_json5("listen/endpoints", "[]")

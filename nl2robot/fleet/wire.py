@@ -24,7 +24,7 @@ from sandbox.limits import MAX_PROGRAM
 
 EVENTS: Final[Mapping[str, str]] = {
     "fleet": "members and errands, as fleet.list tells them, when something has changed; at most"
-    " twice a second",
+    " five times a second",
 }
 WAITS: Final = 60.0
 """Seconds that `fleet.wait` waits at most."""

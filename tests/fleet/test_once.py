@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 
 from hypothesis import given, settings
@@ -65,12 +64,13 @@ def happens(net: FakeNetwork, what: str, number: float) -> None:
             robot.hub.dispatcher.add(errand(f'robot.say("{count}")\n'), net.now)
 
 
-@settings(
-    max_examples=5_000 if os.environ.get("NL2ROBOT_SOAK") else 150,
-    deadline=None,
-)
-@given(st.lists(steps, min_size=5, max_size=80))
-def test_each_thing_is_begun_once_at_most_and_all_come_to_an_end(course) -> None:
+def test_each_thing_is_begun_once_at_most_and_all_come_to_an_end(soak: bool) -> None:
+    courses = st.lists(steps, min_size=5, max_size=80)
+    tried = settings(max_examples=10_000 if soak else 150, deadline=None)(given(courses)(ends_well))
+    tried()
+
+
+def ends_well(course: list[tuple[str, float]]) -> None:
     net = FakeNetwork()
     for number, name in enumerate(NAMES):
         net.robot(name, x=float(number))

@@ -1,14 +1,15 @@
 """`nl2robot bench`: how fast everything is on this machine, in one table; `nl2robot bench hearing`:
 how well it hears; `nl2robot bench console`: how fast the web console is, in a real browser;
 `nl2robot bench planner`: how fast the language model is; `nl2robot bench robots`: how fast robots
-are, and stop, over each wire."""
+are, and stop, over each wire; `nl2robot bench fleet`: how fast ten robots hear of each other."""
 
 from __future__ import annotations
 
 import argparse
 import json
 
-from nl2robot.bench import benchmark, console, hearing, planner, robots
+from nl2robot.bench import benchmark, console, fleet, hearing, planner, robots
+from nl2robot.bench.figures import Figure
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
 
@@ -18,7 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "only",
         nargs="*",
-        help="parts (default: all but hearing, console, planner and robots)",
+        help="parts (default: all but hearing, console, planner, robots and fleet)",
     )
     group = parser.add_argument_group(
         "hearing", "with the part hearing: commands and answers, synthesised and in noise"
@@ -44,6 +45,8 @@ def run(options: argparse.Namespace) -> int:
         return _console(options, terminal)
     if "robots" in options.only:
         return _robots(options, terminal)
+    if "fleet" in options.only:
+        return _fleet(options, terminal)
     table = terminal.table("part", "what", "measured", "aim")
     results = []
     for part in options.only or benchmark.PARTS:
@@ -89,6 +92,23 @@ def _robots(options: argparse.Namespace, terminal: Terminal) -> int:
         figures = [robot.get(key) for robot in measured.values()]
         shown = ["" if figure is None else f"{_rounded(figure)} {unit}" for figure in figures]
         table.add_row(what, *shown, f"{aim} {unit}" if aim else "")
+    terminal.console.print(table)
+    return ExitStatus.OK
+
+
+def _fleet(options: argparse.Namespace, terminal: Terminal) -> int:
+    from rich.progress import Progress
+
+    figures: list[Figure] = []
+    with Progress(console=terminal.console, transient=True) as progress:
+        task = progress.add_task("Starting them", total=None)
+        figures.extend(fleet.measure(told=lambda what: progress.update(task, description=what)))
+    if options.json:
+        print(json.dumps({figure.what: [figure.value, figure.unit] for figure in figures}))
+        return ExitStatus.OK
+    table = terminal.table("what", "measured, or on paper")
+    for figure in figures:
+        table.add_row(figure.what, figure.shown)
     terminal.console.print(table)
     return ExitStatus.OK
 
