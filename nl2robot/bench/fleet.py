@@ -1,5 +1,5 @@
-"""How fast a fleet of ten robots is, in ten processes on this machine. What a thousand would need is
-computed from that. `nl2robot bench fleet` prints it.
+"""How fast a fleet of ten robots is, in ten processes on this machine. What a thousand would need
+is computed from that. `nl2robot bench fleet` prints it.
 
 python -m nl2robot.bench.fleet FOLDER NAME LISTENS CONNECTS    one of the robots ("-": nowhere)
 """

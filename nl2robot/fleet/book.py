@@ -23,11 +23,15 @@ from robot_api.errors import cause
 
 FILE: Final = "fleet.sqlite"
 KEPT: Final = 1_000
-"""Offers and errands that are over, the newest."""
+"""Offers and errands of which all is kept, the newest."""
 _SCHEMA: Final = """
 CREATE TABLE IF NOT EXISTS own (key TEXT PRIMARY KEY, value TEXT NOT NULL);
-CREATE TABLE IF NOT EXISTS offers (number INTEGER PRIMARY KEY, id TEXT UNIQUE, offer BLOB);
-CREATE TABLE IF NOT EXISTS errands (number INTEGER PRIMARY KEY, id TEXT UNIQUE, errand BLOB);
+CREATE TABLE IF NOT EXISTS offers (
+    number INTEGER PRIMARY KEY, id TEXT UNIQUE, offer BLOB, bare INTEGER NOT NULL DEFAULT 0
+);
+CREATE TABLE IF NOT EXISTS errands (
+    number INTEGER PRIMARY KEY, id TEXT UNIQUE, errand BLOB, open INTEGER NOT NULL
+);
 CREATE TABLE IF NOT EXISTS zones (map TEXT, name TEXT, entry BLOB, PRIMARY KEY (map, name));
 """
 
@@ -143,10 +147,11 @@ class FleetBook:
     def keep(self, errand: Errand) -> Errand:
         """From now on it stands like that; on disk when this returns."""
         self._write(
-            "INSERT INTO errands (id, errand) VALUES (?, ?)"
-            " ON CONFLICT (id) DO UPDATE SET errand = excluded.errand",
+            "INSERT INTO errands (id, errand, open) VALUES (?, ?, ?)"
+            " ON CONFLICT (id) DO UPDATE SET errand = excluded.errand, open = excluded.open",
             errand.id,
             _pack(errand),
+            errand.open,
         )
         return errand
 
@@ -160,12 +165,18 @@ class FleetBook:
             "INSERT OR REPLACE INTO zones VALUES (?, ?, ?)", floor, entry.name, _pack(entry)
         )
 
-    def forget(self) -> None:
-        """What is over longest. An offer is forgotten long after anybody could ask for it."""
-        newest = "SELECT number FROM {} ORDER BY number DESC LIMIT ?"
-        for table in ("offers", "errands"):
-            statement = f"DELETE FROM {table} WHERE number NOT IN ({newest.format(table)})"
-            self._write(statement, KEPT)
+    def forget(self, kept: int = KEPT) -> None:
+        """What older errands were, unless they are open, and what was said in older offers. How
+        those ended is kept for good: who is asked for one after years does not begin it again."""
+        old = "number <= (SELECT MAX(number) FROM {0}) - ?"
+        self._write(f"DELETE FROM errands WHERE open = 0 AND {old.format('errands')}", kept)
+        ended = "bare = 0 AND " + old.format("offers")
+        for [number, offer] in self._rows(f"SELECT number, offer FROM offers WHERE {ended}", kept):
+            bare = msgspec.structs.replace(
+                _offer(offer), program="", sentence="", by="", reviewed="", why=None
+            )
+            statement = "UPDATE offers SET offer = ?, bare = 1 WHERE number = ?"
+            self._write(statement, _pack(bare), number)
 
     # --- inside
 

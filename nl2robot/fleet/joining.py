@@ -38,6 +38,7 @@ TICKS: Final = 0.1
 """Seconds between two looks at what is to be said."""
 TOLD_EVERY: Final = 0.2
 """Seconds between two events `fleet`."""
+FORGETS_EVERY: Final = 3600.0
 STOPS_KEPT: Final = 100
 LATEST_RUNS: Final = 200
 TWINS: Final = (
@@ -99,6 +100,7 @@ class Fleet:
         self._stopping: dict[str, Stopped | None] = {}
         self._changed = threading.Condition(self._lock)
         self._told_at = float("-inf")
+        self._forgot_at = float("-inf")
         self._twins: set[str] = set()
         self.network: Network
         self.hub = Hub(
@@ -369,6 +371,9 @@ class Fleet:
                         self.hub.tick(now)
                 if now == ticked:
                     self._tell(now)
+                if now - self._forgot_at >= FORGETS_EVERY:
+                    self._forgot_at = now
+                    self.book.forget()
             except UserError as error:  # a full disk: what is not in the book is not done
                 _log.warning("%s", error)
             except Exception:  # noqa: BLE001 - the others are still listened to

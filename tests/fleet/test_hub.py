@@ -242,3 +242,27 @@ def test_half_a_battery_counts_as_much_as_thirty_metres(net: FakeNetwork) -> Non
     best, why = ranked(members, {"say"}, "ward", (0.0, 0.0), net.now)
     assert best == [full.id, near.id]
     assert why == {low.id: "low", driven.id: "driven"}
+
+
+def test_what_is_old_is_forgotten_but_not_that_it_was_begun(net: FakeNetwork) -> None:
+    ada, ben = net.robot("Ada", x=0.0), net.robot("Ben", x=9.0)
+    net.goes_on(2.0)
+    ada.hub.dispatcher.add(errand(WAY), net.now)
+    net.goes_on(2.0)
+    net.cut = {frozenset((ada.id, ben.id))}
+    ben.over[1] = "done"
+    [begun_there] = ada.book.errands()
+    for number in range(3):
+        old = Order(offer=f"{number}", what="offer", program=WAY, by="Nurse Kim")
+        ben.performer.answer("another", old)
+        ben.performer.answer("another", Order(offer=f"{number}", what="withdraw"))
+        ada.book.keep(errand(f'robot.say("{number}")\n', state="done"))
+    for robot in (ada, ben):
+        robot.book.forget(kept=1)
+    assert begun_there.offer is not None
+    kept = ben.book.offer(begun_there.offer)
+    assert kept is not None and (kept.program, kept.by, kept.stand) == ("", "", "begun")
+    assert sorted(states(ada)) == ["begun", "done"]
+    net.cut.clear()
+    net.goes_on(3.0)
+    assert sorted(states(ada)) == ["done", "done"] and len(list(begun(net))) == 1

@@ -99,7 +99,7 @@ class Ward:
         home = self.folder / name
         home.mkdir(exist_ok=True)
         listens, connects = f"tcp/127.0.0.1:{self.port}", "-"
-        if self.processes.keys() - {name}:
+        if name != NAMES[0]:
             link = self.links.setdefault(name, Link(self.port))
             listens, connects = "-", f"tcp/127.0.0.1:{link.port}"
         process = self.processes[name] = subprocess.Popen(
@@ -251,6 +251,13 @@ def test_two_of_one_name_are_both_told_and_nothing_is_sent_to_the_name(ward: War
     id = next(each["id"] for each in found["members"] if each["twin"])
     errand = ward.run("Ada", 'robot.say("Hello.")\n', robot=id)
     assert ward.over("Ada", errand)["robot"] == id
+
+
+def test_who_comes_before_the_one_that_all_meet_at_waits_for_it(ward: Ward) -> None:
+    ward.starts("Ben")
+    assert known(ward.ask("Ben", "list")) == {"Ben"}
+    ward.starts("Ada")
+    ward.until("Ben", lambda found: known(found) == {"Ada", "Ben"})
 
 
 def test_who_has_another_key_is_not_there(ward: Ward) -> None:
