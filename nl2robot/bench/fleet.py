@@ -68,7 +68,8 @@ def measure(
         told("Counting bytes")
         idle = _bytes(port) / (robots - 1)
         yield Figure("fleet", "bytes a second of a robot's link, at rest", idle, "B/s")
-        for each in clients:
+        lonely = stack.enter_context(Robot(alone[1]))
+        for each in (*clients, lonely):  # a robot that has driven has loaded more
             _walk(each)
         moving = _bytes(port) / (robots - 1)
         yield Figure("fleet", "the same, while all drive", moving, "B/s")
@@ -78,6 +79,7 @@ def measure(
             "stop of all to its last confirmation, median", 1000 * statistics.median(stops)
         )
         yield _figure("the same, the longest", 1000 * max(stops))
+        lonely.stop()
         told("Weighing")
         more = statistics.mean(megabytes(process.pid) for process, _ in started)
         yield Figure("fleet", "memory of a robot's process in the fleet", more, "MB")

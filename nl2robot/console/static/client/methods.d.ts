@@ -1684,6 +1684,122 @@ export interface Methods {
       };
     };
   };
+  fleet: {
+    /**
+     * List the robots of the fleet as this one has heard of them, and what it has given them to do, the newest first. `heard` is how many seconds ago by the clock here; one that is not `known` may stand any way.
+     */
+    list: {
+      params: Record<string, never>;
+      result: unknown;
+    };
+    /**
+     * Approve exactly the program with this SHA-256, for one run by the robot of the fleet that does it best, or by the `robot` of that name or id. That robot reviews it again before it begins. Returns what is to be done, which `fleet.wait` waits for.
+     */
+    run: {
+      params: {
+        program: string;
+        sha256: string;
+        by: string;
+        sentence?: string;
+        language?: string;
+        robot?: string;
+      };
+      /** Something that this robot's dispatcher has to have done once, by some robot. */
+      result: {
+        id: string;
+        program: string;
+        sha256: string;
+        sentence: string;
+        language: string;
+        by: string;
+        reviewed: string;
+        at: number;
+        wanted?: string | null;
+        state?: string;
+        offer?: string | null;
+        robot?: string | null;
+        robot_name?: string | null;
+        run?: number | null;
+        message?: string | null;
+        refused?: {
+          [k: string]: string;
+        };
+      };
+    };
+    /**
+     * Wait until something that was given to the fleet is over, `timeout` seconds at most, and tell how it stands.
+     */
+    wait: {
+      params: {
+        errand: string;
+        timeout?: number;
+      };
+      /** Something that this robot's dispatcher has to have done once, by some robot. */
+      result: {
+        id: string;
+        program: string;
+        sha256: string;
+        sentence: string;
+        language: string;
+        by: string;
+        reviewed: string;
+        at: number;
+        wanted?: string | null;
+        state?: string;
+        offer?: string | null;
+        robot?: string | null;
+        robot_name?: string | null;
+        run?: number | null;
+        message?: string | null;
+        refused?: {
+          [k: string]: string;
+        };
+      };
+    };
+    /** Have something not done that no robot was told to begin yet. */
+    call_off: {
+      params: {
+        errand: string;
+      };
+      /** Something that this robot's dispatcher has to have done once, by some robot. */
+      result: {
+        id: string;
+        program: string;
+        sha256: string;
+        sentence: string;
+        language: string;
+        by: string;
+        reviewed: string;
+        at: number;
+        wanted?: string | null;
+        state?: string;
+        offer?: string | null;
+        robot?: string | null;
+        robot_name?: string | null;
+        run?: number | null;
+        message?: string | null;
+        refused?: {
+          [k: string]: string;
+        };
+      };
+    };
+    /**
+     * Stop all robots of the fleet, or the `robot` of that name or id; returns what each says to that. One that has not `answered` may still move.
+     */
+    stop: {
+      params: {
+        robot?: string;
+      };
+      /** Items: A robot's answer to a stop. */
+      result: {
+        id: string;
+        name: string;
+        confirmed: boolean;
+        answered: boolean;
+        because: string;
+      }[];
+    };
+  };
   desk: {
     /**
      * Review a program as `program.check` does, told as the desk tells it: the outcome, whether that is good, facts (a heading with its items), marks on the lines, and each line in plain words (line, depth, text). With `at`, as if it began then.
@@ -2304,6 +2420,10 @@ export interface Events {
    * id, state (waiting | approved | declined | withdrawn | expired), by, sentence, why, at, and once it is decided decided_by, reason, run: a program was proposed, or one that waited is decided
    */
   proposal: any;
+  /**
+   * members and errands, as fleet.list tells them, when something has changed; at most five times a second
+   */
+  fleet: any;
   /**
    * time, x, y (metres), theta (degrees), speed (m/s), place, way [[x, y]] ahead, lidar [centimetres], people [[name, kind, x, y, theta, posture]], things that were moved [[number, x, y, holder: name | true for the robot | null]], closed [numbers of doors], holding [names]; at most 12 a second, once `scene.floor` was called
    */

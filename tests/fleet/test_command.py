@@ -1,0 +1,112 @@
+"""The fleet at a terminal, and what is said where there is none."""
+
+from __future__ import annotations
+
+import json
+import stat
+from pathlib import Path
+
+import pytest
+
+from nl2robot.cli import main as cli
+from nl2robot.errors import ExitStatus
+from nl2robot.fleet.address import BadFleet, FleetAddress, parse_fleet
+from nl2robot.fleet.key import VARIABLE
+from nl2robot.run.runlog import RunLog
+from nl2robot.station.station import simulated_station
+from sim.world.loading import load_world
+
+Said = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path))
+    monkeypatch.setenv("NL2ROBOT_USER", "Nurse Kim")
+    monkeypatch.delenv(VARIABLE, raising=False)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("text", "connects"),
+    [
+        ("Ada", ()),
+        ("Ada@tcp/10.0.0.5:7447", ("tcp/10.0.0.5:7447",)),
+        ("Ada@tls/hub.example:7447, tcp/[::1]:7447", ("tls/hub.example:7447", "tcp/[::1]:7447")),
+    ],
+)
+def test_where_a_robot_meets_its_fleet(text: str, connects: tuple[str, ...]) -> None:
+    assert parse_fleet(text) == FleetAddress("Ada", connects)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "@tcp/10.0.0.5:7447", "Ada@10.0.0.5", "Ada@tcp/x:70000", "A\nb", "x" * 61]
+)
+def test_what_says_nowhere_to_meet_is_refused(text: str) -> None:
+    with pytest.raises(BadFleet, match="tcp/HOST:PORT"):
+        parse_fleet(text)
+
+
+def test_a_key_is_for_its_user_alone_and_is_made_once(home: Path, capsys: Said) -> None:
+    assert cli.main(["fleet", "key"]) == ExitStatus.OK
+    file = home / "fleet.key"
+    key, said = file.read_text(), capsys.readouterr().out
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600 and str(file) in said.replace("\n", "")
+    assert key.strip() not in said
+    assert cli.main(["fleet", "key", "--lang", "de"]) == ExitStatus.OK
+    assert file.read_text() == key and "Fingerabdruck" in capsys.readouterr().out
+    file.chmod(0o644)
+    assert cli.main(["serve", "--port", "0", "--fleet", "Ada"]) == ExitStatus.BAD_INPUT
+    assert "can be read by others" in capsys.readouterr().err
+
+
+def test_serve_says_what_is_missing(
+    home: Path, capsys: Said, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def serve(*more: str) -> str:
+        assert cli.main(["serve", "--port", "0", *more]) == ExitStatus.BAD_INPUT
+        return capsys.readouterr().err
+
+    assert "nl2robot fleet key" in serve("--fleet", "Ada")
+    assert "add --fleet NAME" in serve("--fleet-listen", "tcp/127.0.0.1:7447")
+    monkeypatch.setenv(VARIABLE, "short")
+    assert VARIABLE in serve("--fleet", "Ada")
+    monkeypatch.setenv(VARIABLE, "k" * 40)
+    config = home / "zenoh.json5"
+    config.write_text("{mode: 'nobody'}")
+    assert str(config) in serve("--fleet", "Ada", "--fleet-config", str(config)).replace("\n", "")
+
+
+def test_a_robot_without_a_fleet_says_so(home: Path, capsys: Said) -> None:
+    log = RunLog(":memory:")
+    with simulated_station(load_world("ward"), log) as station:
+        assert cli.main(["fleet", "--robot", f"ws://{station.address}"]) == ExitStatus.BAD_INPUT
+    assert "has joined no fleet" in capsys.readouterr().err
+
+
+def test_a_fleet_of_one_lists_runs_and_stops(home: Path, capsys: Said) -> None:
+    log = RunLog(home / "runs.sqlite")
+    fleet = FleetAddress("Ada", key=b"k" * 40)
+    program = home / "hello.py"
+    program.write_text('robot.say("Hello.")\n')
+    with simulated_station(load_world("ward"), log, fleet=fleet) as station:
+        here = ("--robot", f"ws://{station.address}")
+        with station.connect() as robot:
+            while not all(each["known"] for each in robot.request("fleet.list", {})["members"]):
+                pass
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("builtins.input", lambda *_: "approve")
+            ran = cli.main(["fleet", "run", "--program", str(program), *here])
+        said = capsys.readouterr().out
+        assert ran == ExitStatus.OK, said
+        assert "Ada does it." in said and "Done" in said
+        assert cli.main(["fleet", "--json", *here]) == ExitStatus.OK
+        found = json.loads(capsys.readouterr().out)
+        assert [each["name"] for each in found["members"]] == ["Ada"]
+        [errand] = found["errands"]
+        assert (errand["by"], errand["run"]) == ("Nurse Kim (fleet, from Ada)", 1)
+        assert cli.main(["fleet", "stop", *here]) == ExitStatus.OK
+        assert "it stands" in capsys.readouterr().out
+        assert cli.main(["fleet", "stop", "Eve", *here]) == ExitStatus.BAD_INPUT
+        assert "There is no robot “Eve”" in capsys.readouterr().err
+    log.close()
