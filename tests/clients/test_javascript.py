@@ -113,7 +113,10 @@ def test_the_types_are_what_a_server_says_of_itself(
     assert made == (CLIENT / "methods.d.ts").read_text("utf-8"), HINT
     with urllib.request.urlopen(f"{served.url}/openrpc.json", timeout=20) as answer:
         there = json.load(answer)
-    assert there["methods"] == json.loads(document)["methods"]
+    everywhere = [
+        each for each in json.loads(document)["methods"] if not each["name"].startswith("fleet.")
+    ]
+    assert there["methods"] == everywhere, "a robot of a fleet has those besides"
 
 
 def test_its_own_types_are_what_its_text_says(node: str, tmp_path: Path, run: Run) -> None:
