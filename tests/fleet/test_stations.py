@@ -173,6 +173,11 @@ def ward(tmp_path: Path) -> Iterator[Ward]:
     ward.close()
 
 
+def states(found: dict[str, Any]) -> list[str]:
+    """As far as anything was heard of them."""
+    return [each["standing"]["state"] for each in found["members"] if each["standing"]]
+
+
 def known(found: dict[str, Any]) -> set[str]:
     return {each["name"] for each in found["members"] if each["known"]}
 
@@ -221,6 +226,7 @@ def test_a_robot_goes_on_alone_and_is_told_of_as_not_heard_of(ward: Ward) -> Non
     ward.until("Ada", lambda found: known(found) == {"Ada", "Ben"})
     errand = ward.run("Ada", 'robot.goto("ward b")\nrobot.wait(20)\n', robot="Ben")
     ward.until("Ada", lambda found: found["errands"][0]["state"] == "begun")
+    ward.until("Ada", lambda found: "running" in states(found))
     ward.links["Ben"].cut()
     found = ward.until("Ada", lambda found: known(found) == {"Ada"})
     [ben] = [each for each in found["members"] if each["name"] == "Ben"]
