@@ -54,8 +54,7 @@ MAX_ID: Final = 200
 EVERY_EVENT: Final = "*"
 
 NOT_ALLOWED: Final = (
-    "Your role does not allow this: you may look on, or answer. Sign in as somebody who may, or ask"
-    " for the operators' link."
+    "Your role does not allow this. Sign in as somebody who may, or ask for the operators' link."
 )
 PARSE_ERROR: Final = -32700
 INVALID_REQUEST: Final = -32600

@@ -23,13 +23,15 @@ from pydantic import Field
 from nl2robot import __version__
 from nl2robot.assistant.guide import INSTRUCTIONS, guide
 from nl2robot.assistant.link import Link
+from nl2robot.errors import UserError
 from nl2robot.proposals.proposals import Made, Proposal
 from nl2robot.review.review import Review
 from nl2robot.run.answers import Sentence
+from nl2robot.run.runlog import Run
 from nl2robot.run.runs import Status
 from nl2robot.schedule.schedule import Listed
 from nl2robot.translate.outcome import Translation
-from robot_api.errors import RobotError, Stopped
+from robot_api.errors import NotPossible, RobotError, Stopped
 
 T = TypeVar("T")
 
@@ -103,7 +105,11 @@ class Ran(TypedDict):
 def assistant_server(link: Link) -> MCPServer[Any]:
     """A server with all that an assistant may do with this robot."""
     server: MCPServer[Any] = MCPServer(
-        "nl2robot", title="nl2robot", version=__version__, instructions=INSTRUCTIONS
+        "nl2robot",
+        title="nl2robot",
+        version=__version__,
+        instructions=INSTRUCTIONS,
+        log_level="WARNING",  # a line for each call is no news
     )
 
     @server.tool(title="What there is", annotations=_LOOKS)
@@ -126,15 +132,16 @@ def assistant_server(link: Link) -> MCPServer[Any]:
     @server.tool(title="From a sentence to a program", annotations=_LOOKS)
     async def translate(sentence: str, language: Language = "en") -> Translated:
         """Turn a plain sentence, such as "go to the lobby and say hello", into a program. Moves
-        nothing. If the status is clarify, ask whoever you work for."""
+        nothing. Say the language of the sentence. If the status is clarify, ask whoever you work
+        for."""
         asked = {"utterance": sentence, "language": language}
         made = await _asked(link.ask, "program.translate", Translation, asked)
-        program = made.program if made.schedule is None else made.schedule.program
+        later = made.schedule
         return Translated(
-            status=made.status,
-            program=program,
+            status=made.status if later is None else "rejected",
+            program=made.program,
             explanation=made.explanation,
-            question_or_reason=made.message,
+            question_or_reason=made.message if later is None else _LATER.format(when=later.when),
             could_say_instead=list(made.suggestions),
         )
 
@@ -143,7 +150,7 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         """Review a program as people will see it: errors, risks, and a dry run in a simulator of
         this robot's world. Moves nothing."""
         asked = {"program": program, "language": language}
-        return _checked(await _asked(link.ask, "program.check", Review, asked))
+        return _checked(await _asked(link.ask, "program.check", Review, asked), program)
 
     @server.tool(title="Propose a program", annotations=_ASKS)
     async def propose(
@@ -189,17 +196,23 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         wait_seconds: Seconds = 30.0,
         language: Language = "en",
     ) -> Ran:
-        """Wait until a run is over, and tell how it went and what came of it."""
+        """Wait until a run that was proposed is over, and tell how it went and what came of it."""
+        known = await _asked(link.ask, "proposal.list", list[Proposal])
+        if run not in {each.run for each in known}:
+            raise ToolError(
+                f"Run {run} became of no proposal that is still known. Ask the people at the robot."
+            )
         left = wait_seconds
         while True:
             step = min(left, REPORTS_EVERY)
             try:
-                status = await _asked(
-                    link.ask, "program.wait", Status, {"run": run, "timeout": step}
-                )
+                asked_for = {"run": run, "timeout": step}
+                status = await _tried_to_ask(link.ask, "program.wait", Status, asked_for)
             except Stopped:  # which ends every call, and the run
                 left -= step
                 continue
+            except NotPossible:  # another one has begun since
+                return await _past(link, run, language)
             left -= step
             if status.state not in ("running", "pausing", "paused") or left <= 0:
                 break
@@ -217,10 +230,9 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         )
 
     @server.tool(title="Take a proposal back", annotations=_ASKS)
-    async def withdraw(proposal: Number, context: Context[Any, Any]) -> Proposed:
+    async def withdraw(proposal: Number) -> Proposed:
         """Take back a proposal that nobody has decided on."""
-        asked = {"id": proposal, "by": _name(context)}
-        return _proposed(await _asked(link.ask, "proposal.withdraw", Proposal, asked))
+        return _proposed(await _asked(link.ask, "proposal.withdraw", Proposal, {"id": proposal}))
 
     @server.tool(title="STOP", annotations=_STOPS)
     async def stop(context: Context[Any, Any]) -> str:
@@ -230,13 +242,13 @@ def assistant_server(link: Link) -> MCPServer[Any]:
 
     @server.tool(title="What is planned", annotations=_LOOKS)
     async def planned(language: Language = "en") -> list[dict[str, Any]]:
-        """The approved programs that begin by themselves, at set times or at an event."""
+        """When approved programs begin by themselves, at set times or at an event; not what they do,
+        which may be about patients."""
         listed = await _asked(link.ask, "schedule.list", list[Listed], {"language": language})
         return [
             {
                 "number": each.appointment.id,
                 "when": each.when,
-                "what": each.appointment.sentence,
                 "paused": each.appointment.paused,
                 "next": list(each.next[:1]),
             }
@@ -248,20 +260,42 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         """The rules of programs, and this robot's methods as Python signatures."""
         try:
             return guide(await anyio.to_thread.run_sync(link.capabilities))
-        except RobotError as error:
+        except (RobotError, UserError) as error:
             raise ResourceError(str(error)) from error
 
     return server
 
 
+async def _tried_to_ask(ask: Callable[..., T], *arguments: Any) -> T:
+    """Ask in a thread of its own. Raises `RobotError`, `UserError`."""
+    return await anyio.to_thread.run_sync(
+        functools.partial(ask, *arguments), abandon_on_cancel=True
+    )
+
+
 async def _asked(ask: Callable[..., T], *arguments: Any) -> T:
-    """Ask in a thread of its own; what goes wrong is a sentence for the assistant."""
+    """The same; what goes wrong is a sentence for the assistant."""
     try:
-        return await anyio.to_thread.run_sync(
-            functools.partial(ask, *arguments), abandon_on_cancel=True
-        )
-    except RobotError as error:
+        return await _tried_to_ask(ask, *arguments)
+    except (RobotError, UserError) as error:
         raise ToolError(str(error)) from error
+
+
+async def _past(link: Link, number: int, language: str) -> Ran:
+    """How a run went that is not the last one."""
+    runs = await _tried_to_ask(link.ask, "program.list", list[Run], {"last": 1000})
+    found = next((each for each in runs if each.id == number), None)
+    if found is None:
+        raise ToolError(f"Run {number} is in the log no more. Ask the people at the robot.")
+    asked = {"run": number, "language": language}
+    answers = await _asked(link.ask, "program.answer", list[Sentence], asked)
+    return Ran(
+        run=number,
+        state=found.status or "interrupted",
+        line=None,
+        message=found.message,
+        answers=[each.text for each in answers],
+    )
 
 
 def _name(context: Context[Any, Any]) -> str:
@@ -272,7 +306,7 @@ def _name(context: Context[Any, Any]) -> str:
     return name or "an assistant"
 
 
-def _checked(review: Review) -> Checked:
+def _checked(review: Review, program: str) -> Checked:
     dry_run = review.dry_run
     return Checked(
         can_be_approved=review.acceptable,
@@ -280,7 +314,10 @@ def _checked(review: Review) -> Checked:
         findings=[f"{each.severity}, line {each.line}: {each.message}" for each in review.findings],
         risks=[f"line {each.line}: {each.text}" for each in review.risks],
         dry_run="not tried" if dry_run is None else _tried(review),
-        says=list(dry_run.says) if dry_run is not None else [],
+        # What a program puts together may be the names of people in that world.
+        says=[each if each in program else _PUT_TOGETHER for each in dry_run.says]
+        if dry_run is not None
+        else [],
         goes_to=list(dry_run.places) if dry_run is not None else [],
     )
 
@@ -292,6 +329,11 @@ def _tried(review: Review) -> str:
     return f"{told}: {dry_run.message}" if dry_run.message else told
 
 
+_PUT_TOGETHER: Final = "(put together when it runs)"
+_LATER: Final = (
+    "This is to be done later, or again and again ({when}). You cannot propose that: ask whoever"
+    " you work for to say it at the robot's console."
+)
 _WHAT_NOW: Final = {
     "waiting": "It waits for a person at the console, or at `nl2robot proposals`. Call decision.",
     "approved": "A person approved it, and it runs. Call run with its number.",
@@ -313,4 +355,4 @@ def _proposed(proposal: Proposal) -> Proposed:
     )
 
 
-msgspec.json.Decoder(tuple[Translation, Review, Made, Proposal, Status, Sentence, Listed])
+msgspec.json.Decoder(tuple[Translation, Review, Made, Proposal, Status, Sentence, Listed, Run])

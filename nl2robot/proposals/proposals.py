@@ -60,6 +60,8 @@ class Proposal(msgspec.Struct, frozen=True, kw_only=True):
     by: str
     account: str = ""
     """What they came in by; empty for all that have no account of their own."""
+    connection: str = ""
+    """The one that it was made over."""
     language: str
     at: float
     """Seconds since the epoch, as all times here."""
@@ -110,6 +112,7 @@ class Proposals:
         why: str = "",
         language: str = "en",
         account: str = "",
+        connection: str = "",
     ) -> Made:
         """Review a program, and lay it before the people who decide. `account`: what they came in
         by, for which the limits hold, whatever they call themselves. Raises `UserError` if it has
@@ -135,6 +138,7 @@ class Proposals:
                 why=why,
                 by=by,
                 account=account,
+                connection=connection,
                 language=language,
                 at=now,
                 until=now + HOLDS,
@@ -144,13 +148,16 @@ class Proposals:
         self._tell(made)
         return Made(proposal=made, review=review)
 
-    def withdraw(self, number: int, by: str) -> Proposal:
-        """Whoever proposed it does not want it any more. Raises `UserError`."""
+    def withdraw(self, number: int, account: str = "", connection: str = "") -> Proposal:
+        """Whoever proposed it does not want it any more: the same account, or without one the same
+        connection. Raises `UserError`."""
         self._expire()
         with self._changed:
-            if self._one(number).by != by:
+            found = self._one(number)
+            mine = found.account == account and (account or found.connection == connection)
+            if not mine:
                 raise UserError(f"Proposal {number} is somebody else's. Leave it to them.")
-            decided = self._decide(number, "withdrawn", by)
+            decided = self._decide(number, "withdrawn", found.by)
         self._tell(decided)
         return decided
 
@@ -210,7 +217,7 @@ class Proposals:
             text,
             sha256,
             f"{by} (proposed by {asked.by})",
-            utterance=asked.sentence,
+            utterance=f"{asked.by}: {asked.sentence}",
             language=asked.language,
             proposed=asked.program,
             changed_by=by,
@@ -321,8 +328,8 @@ class Proposals:
         waiting = [each for each in self._known.values() if each.state == "waiting"]
         if sum(each.account == account for each in waiting) >= MOST_WAITING:
             raise UserError(
-                f"{MOST_WAITING} of your proposals wait for a person already. Wait until one is"
-                " decided, or withdraw one."
+                f"{MOST_WAITING} proposals by you, or by others who come in as you do, wait for a"
+                " person already. Wait until one is decided, or withdraw one."
             )
         if len(waiting) >= MOST_WAITING_IN_ALL:
             raise UserError(
@@ -338,6 +345,6 @@ class Proposals:
     def _tell(self, proposal: Proposal) -> None:
         """Everybody who looks on. Not with the lock, for the listener may ask."""
         told: dict[str, Any] = msgspec.to_builtins(proposal)
-        for left_out in ("program", "ran", "account"):
+        for left_out in ("program", "ran", "account", "connection"):
             del told[left_out]
         self._publish(KIND, told)

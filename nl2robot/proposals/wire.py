@@ -19,29 +19,35 @@ _SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 _TEXT: Final = {"type": "string", "maxLength": MAX_TEXT}
 
 
+_MARKS: Final = str.maketrans(dict.fromkeys('“”„«»"‟❝❞〝〞＂', "'"))
+
+
 def proposal_services(proposals: Proposals) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
 
     def made(p: Mapping[str, Any], context: Context) -> Made:
-        # Whoever has no account may call themselves anything, but not what somebody is called.
-        by = p["by"] if context.who else f"“{p['by']}”"
-        for name in ("sentence", "why"):
+        for name in ("sentence", "why", "by"):
             if not p.get(name, "").isprintable():
                 raise UserError(f"The text of `{name}` is one line without control characters.")
+        # A program, and whoever has no account, may call itself anything, but stands in quotation
+        # marks: nobody takes it for a person.
+        person = context.who is not None and context.role != "assistant"
+        by = p["by"] if person else f"“{_quoted(p['by'])}”"
         return proposals.make(
             p["program"],
-            p["sentence"],
+            _quoted(p["sentence"]),
             by,
-            p.get("why", ""),
+            _quoted(p.get("why", "")),
             p.get("language", "en"),
             context.who or "",
+            context.connection,
         )
 
     def waited(p: Mapping[str, Any], context: Context) -> Proposal:
         return proposals.wait(p["id"], p.get("timeout", HOLDS), context.stop.is_set)
 
     def withdrawn(p: Mapping[str, Any], context: Context) -> Proposal:
-        return proposals.withdraw(p["id"], p["by"] if context.who else f"“{p['by']}”")
+        return proposals.withdraw(p["id"], context.who or "", context.connection)
 
     return {
         "proposal.make": service_of_call(
@@ -87,8 +93,8 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
         "proposal.withdraw": service_of_call(
             withdrawn,
             "Take back a proposal that is not decided, and one's own.",
-            {"id": _NUMBER, "by": _NAME},
-            "id by",
+            {"id": _NUMBER},
+            "id",
             right="propose",
             result=Proposal,
         ),
@@ -111,3 +117,8 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
             result=Proposal,
         ),
     }
+
+
+def _quoted(text: str) -> str:
+    """As it may stand in quotation marks, which nothing inside closes."""
+    return text.translate(_MARKS)

@@ -6,6 +6,7 @@ import os
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import AsyncIterator, Iterator
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from pathlib import Path
@@ -31,6 +32,8 @@ name: Trap
 robot: {{start: ward a}}
 walls:
   - [0, 0, 12, 0, 12, 8, 0, 8, 0, 0]
+people:
+  - {{name: Alice, at: ward a, pose: [4, 6]}}
 places:
   - {{name: ward a, pose: [3, 5], area: [0, 0, 6, 8]}}
   - {{name: "{TRAP}", pose: [9, 5], area: [6, 0, 12, 8]}}
@@ -143,7 +146,7 @@ def test_whatever_a_name_says_there_is_no_way_to_approve(here: Served) -> None:
         # Nor if its own program were turned against the server: it came in as an assistant.
         for method in ("program.approve", "proposal.approve", "robot.move", "schedule.add"):
             with pytest.raises(AccessDenied):
-                link._robot.request(method, {})
+                link.robot().request(method, {})
         with pytest.raises(AssertionError):
             link.ask("proposal.approve", dict[str, Any])
     finally:
@@ -155,7 +158,7 @@ def test_all_that_it_asks_for_is_there_and_allowed(here: Served) -> None:
     try:
         for method in MAY - {"robot.stop", "robot.capabilities"}:
             with pytest.raises(RobotError) as refused:
-                link._robot.request(method, {"no such": 1})
+                link.robot().request(method, {"no such": 1})
             assert not isinstance(refused.value, AccessDenied), method
     finally:
         link.close()
@@ -199,14 +202,15 @@ def over_http(served: Served) -> Iterator[str]:
     with subprocess.Popen(
         [sys.executable, *MCP, "--robot", f"ws://{served.address}", "--http", str(port)],
         env={**os.environ, "NL2ROBOT_HOME": str(served.home)},
-        stderr=subprocess.PIPE,
-        text=True,
     ) as server:
         try:
-            assert server.stderr is not None
-            for line in server.stderr:
-                if "Uvicorn running" in line:
+            ends = time.monotonic() + 60
+            while True:
+                try:
+                    socket.create_connection(("127.0.0.1", port), timeout=1).close()
                     break
+                except ConnectionRefusedError:
+                    assert time.monotonic() < ends and server.poll() is None
             yield f"http://127.0.0.1:{port}/mcp"
         finally:
             server.terminate()
@@ -235,3 +239,59 @@ def test_a_server_with_other_accounts_asks_for_a_token(
     monkeypatch.setattr("nl2robot.assistant.link.NOTICED_AFTER", 0.0)
     with pytest.raises(UserError, match="accounts token NAME"):
         connected(f"ws://{served.address}", None)
+
+
+def test_it_may_come_before_the_server_does(tmp_path: Path) -> None:
+    """Assistants' programs start with the computer; whoever calls it then is told, and it works as
+    soon as the robot is there."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    away = Served(f"127.0.0.1:{port}", None, tmp_path, [])  # type: ignore[arg-type]
+
+    async def story() -> None:
+        async with assistant(away) as client:
+            result = await client.call_tool("robot_state", {})
+            assert result.is_error and "There is no robot at" in str(result.content)
+            with serving(tmp_path, "--port", str(port)):
+                assert (await called(client, "robot_state"))["state"]
+
+    anyio.run(story)
+
+
+def test_what_the_dry_run_finds_of_people_is_not_told(served: Served) -> None:
+    async def story() -> None:
+        async with assistant(served) as client:
+            asks = "for person in robot.people():\n    robot.say(person)\nrobot.say('Hello!')\n"
+            tried = await called(client, "check", program=asks)
+            assert {*tried["says"]} == {"(put together when it runs)", "Hello!"}
+
+    anyio.run(story)
+
+
+def test_runs_that_people_began_are_none_of_its_business(served: Served) -> None:
+    async def story() -> None:
+        async with assistant(served) as client:
+            with kim(served) as robot:
+                asked = Asked(robot)
+                theirs = asked.approve(asked.propose('robot.say("One.")\n')["proposal"])["run"]
+                robot.request("program.wait", {"run": theirs})
+                later = asked.approve(asked.propose('robot.say("Two.")\n')["proposal"])["run"]
+                robot.request("program.wait", {"run": later})
+            ran = await called(client, "run", run=theirs)
+            assert ran["state"] == "done", "though another was begun since"
+            result = await client.call_tool("run", {"run": later + 1})
+            assert result.is_error and "became of no proposal" in str(result.content)
+
+    anyio.run(story)
+
+
+def test_what_is_for_later_is_said_to_be_for_people(served: Served) -> None:
+    async def story() -> None:
+        async with assistant(served) as client:
+            sentence = "every day at ten go to ward a and say hello"
+            made = await called(client, "translate", sentence=sentence)
+            assert made["program"] is None and made["status"] == "rejected"
+            assert "You cannot propose that" in made["question_or_reason"]
+
+    anyio.run(story)

@@ -48,7 +48,7 @@ def test_somebody_approves_it_and_it_runs_in_both_their_names(ward: Asked, log: 
     [run] = log.runs()
     assert run.status == "done"
     assert run.approved_by == "Nurse Kim (proposed by “Sam”)"
-    assert run.utterance == "say hello in ward a"
+    assert run.utterance == "“Sam”: say hello in ward a"
 
 
 def test_somebody_says_no_and_why(ward: Asked, log: RunLog) -> None:
@@ -106,13 +106,19 @@ def test_nobody_is_asked_about_a_program_with_an_error(ward: Asked) -> None:
     assert ward.ask("list") == []
 
 
+def test_whatever_it_says_stays_within_its_quotation_marks(ward: Asked) -> None:
+    made = ward.propose(sentence="says hi” Approved by Nurse Kim. “", by="Sam” (console). “")
+    assert made["proposal"]["sentence"] == "says hi' Approved by Nurse Kim. '"
+    assert made["proposal"]["by"] == "“Sam' (console). '”"
+
+
 def test_only_few_wait_and_one_that_is_taken_back_makes_room(ward: Asked) -> None:
     made = [ward.propose()["proposal"] for _ in range(proposing.MOST_WAITING)]
     with pytest.raises(InvalidCall, match="wait for a person already"):
         ward.propose()
-    with pytest.raises(InvalidCall, match="somebody else's"):
-        ward.ask("withdraw", id=made[0]["id"], by="Eve")
-    assert ward.ask("withdraw", id=made[0]["id"], by="Sam")["state"] == "withdrawn"
+    with Robot(ward.robot.address) as other, pytest.raises(InvalidCall, match="somebody else's"):
+        Asked(other).ask("withdraw", id=made[0]["id"])
+    assert ward.ask("withdraw", id=made[0]["id"])["state"] == "withdrawn"
     with pytest.raises(InvalidCall, match="has withdrawn proposal"):
         ward.approve(made[0])
     ward.propose()
@@ -124,7 +130,7 @@ def test_a_flood_is_refused_in_sentences(ward: Asked, log: RunLog) -> None:
     for number in range(100):
         try:
             made = ward.propose(by=f"assistant {number}")["proposal"]
-            ward.ask("withdraw", id=made["id"], by=f"assistant {number}")
+            ward.ask("withdraw", id=made["id"])
         except InvalidCall as error:
             refused.append(str(error))
     assert len(refused) == 100 - proposing.MOST_A_MINUTE
@@ -144,7 +150,7 @@ def test_the_oldest_are_forgotten(ward: Asked, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(proposing, "KEPT", 2)
     for _ in range(4):
         made = ward.propose()["proposal"]
-        ward.ask("withdraw", id=made["id"], by="Sam")
+        ward.ask("withdraw", id=made["id"])
     ward.propose()
     assert [each["id"] for each in ward.ask("list")] == [3, 4, 5]
     with pytest.raises(InvalidCall, match="There is no proposal 1"):

@@ -47,7 +47,7 @@ def test_rejected_it_is_declined_and_what_it_says_is_only_text(
 ) -> None:
     made = assistant.propose(sentence=TRAP, by=TRAP)["proposal"]
     page = look(f"/?proposal={made['id']}", width=390, dark=True)
-    expect(page.locator("#conversation")).to_contain_text(TRAP)
+    expect(page.locator("#conversation")).to_contain_text(TRAP.replace('"', "'"))
     expect(page).not_to_have_title("1")
     page.locator("#reject").click()
     assert assistant.ask("wait", id=made["id"], timeout=30)["state"] == "declined"
@@ -62,7 +62,7 @@ def test_taken_back_while_it_is_looked_at_it_cannot_be_approved(
     made = assistant.propose('robot.say("Hello!")\n')["proposal"]
     page = look(f"/?proposal={made['id']}")
     expect(page.locator("#approve")).to_be_enabled()
-    assistant.ask("withdraw", id=made["id"], by="Sam")
+    assistant.ask("withdraw", id=made["id"])
     page.locator("#approve").click()
     expect(page.locator("#conversation")).to_contain_text("has withdrawn proposal")
     assert assistant.ask("show", id=made["id"])["run"] is None

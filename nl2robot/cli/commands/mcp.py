@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import argparse
 import logging
+import socket
 import sys
 
 from nl2robot.assistant.link import connected
 from nl2robot.cli.options.robot import add_ca, trust
 from nl2robot.cli.options.values import whole
 from nl2robot.errors import ExitStatus, UserError
+from robot_api.errors import cause
 from robot_api.server import DEFAULT_PORT
 
 
@@ -52,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
         if options.http is None:
             server.run("stdio")
         else:
+            _check_free(options.http)
             print(
                 f"Assistants on this machine find the robot at http://127.0.0.1:{options.http}/mcp.",
                 file=sys.stderr,
@@ -60,3 +63,16 @@ def run(options: argparse.Namespace) -> int:
     finally:
         link.close()
     return ExitStatus.OK
+
+
+def _check_free(port: int) -> None:
+    """Raises `UserError` if something else listens there."""
+    with socket.socket() as tried:
+        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            tried.bind(("127.0.0.1", port))
+        except OSError as error:
+            raise UserError(
+                f"Port {port} cannot be listened at ({cause(error)}). Choose another: --http"
+                f" {port + 1 if port < 65535 else 8765}."
+            ) from error

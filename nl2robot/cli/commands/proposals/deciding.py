@@ -7,6 +7,7 @@ from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
 from nl2robot.plain import visible
 from nl2robot.proposals.proposals import Proposal
+from robot_api.errors import StopNotConfirmed
 
 
 def decide_on(operator: Operator, terminal: Terminal, proposal: Proposal) -> ExitStatus:
@@ -24,12 +25,24 @@ def decide_on(operator: Operator, terminal: Terminal, proposal: Proposal) -> Exi
     finally:
         operator.reviewing(False)
     if decision != "approve":
-        operator.decline_proposal(proposal)
+        operator.decline_proposal(proposal, _reason(terminal))
         show(words["rejected"], markup=False)
         return ExitStatus.NOT_APPROVED
     decided = operator.approve_proposal(proposal, insists=not review.came_through)
     assert decided.run is not None
-    status = operator.wait(decided.run)
+    try:
+        status = operator.wait(decided.run)
+    except KeyboardInterrupt:
+        try:
+            operator.stop()
+        except StopNotConfirmed:
+            terminal.show_unconfirmed()
+        raise
     came = operator.answer(decided.run, terminal.language)
     terminal.show_answer(came, status.state, status.message, status.error)
     return ExitStatus.OK if status.state == "done" else ExitStatus.FAILED
+
+
+def _reason(terminal: Terminal) -> str | None:
+    """Why not, if somebody is there and says so."""
+    return terminal.ask(terminal.words["why_not"]).strip() if terminal.somebody_is_there else None

@@ -1459,6 +1459,7 @@ export interface Methods {
           why?: string;
           by: string;
           account?: string;
+          connection?: string;
           language: string;
           at: number;
           until: number;
@@ -1536,6 +1537,7 @@ export interface Methods {
         why?: string;
         by: string;
         account?: string;
+        connection?: string;
         language: string;
         at: number;
         until: number;
@@ -1561,6 +1563,7 @@ export interface Methods {
         why?: string;
         by: string;
         account?: string;
+        connection?: string;
         language: string;
         at: number;
         until: number;
@@ -1589,6 +1592,7 @@ export interface Methods {
         why?: string;
         by: string;
         account?: string;
+        connection?: string;
         language: string;
         at: number;
         until: number;
@@ -1604,7 +1608,6 @@ export interface Methods {
     withdraw: {
       params: {
         id: number;
-        by: string;
       };
       /** A program that somebody proposes, and what came of it. */
       result: {
@@ -1615,6 +1618,7 @@ export interface Methods {
         why?: string;
         by: string;
         account?: string;
+        connection?: string;
         language: string;
         at: number;
         until: number;
@@ -1645,6 +1649,7 @@ export interface Methods {
         why?: string;
         by: string;
         account?: string;
+        connection?: string;
         language: string;
         at: number;
         until: number;
@@ -1672,6 +1677,7 @@ export interface Methods {
         why?: string;
         by: string;
         account?: string;
+        connection?: string;
         language: string;
         at: number;
         until: number;
