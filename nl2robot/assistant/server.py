@@ -242,8 +242,8 @@ def assistant_server(link: Link) -> MCPServer[Any]:
 
     @server.tool(title="What is planned", annotations=_LOOKS)
     async def planned(language: Language = "en") -> list[dict[str, Any]]:
-        """When approved programs begin by themselves, at set times or at an event; not what they do,
-        which may be about patients."""
+        """When approved programs begin by themselves, at set times or at an event; not what they
+        do, which may be about patients."""
         listed = await _asked(link.ask, "schedule.list", list[Listed], {"language": language})
         return [
             {

@@ -20,6 +20,7 @@ from mcp.client.streamable_http import streamable_http_client
 
 from nl2robot.assistant.link import MAY, connected
 from nl2robot.errors import UserError
+from nl2robot.review.review import digest
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, RobotError
 from tests.console.conftest import Served, serving
@@ -274,13 +275,16 @@ def test_runs_that_people_began_are_none_of_its_business(served: Served) -> None
         async with assistant(served) as client:
             with kim(served) as robot:
                 asked = Asked(robot)
-                theirs = asked.approve(asked.propose('robot.say("One.")\n')["proposal"])["run"]
+                proposed = asked.approve(asked.propose('robot.say("One.")\n')["proposal"])["run"]
+                robot.request("program.wait", {"run": proposed})
+                program = 'robot.say("Two.")\n'
+                about = {"program": program, "sha256": digest(program), "by": "Kim"}
+                approval = robot.request("program.approve", about)
+                theirs = robot.request("program.run", {"approval": approval["id"]})
                 robot.request("program.wait", {"run": theirs})
-                later = asked.approve(asked.propose('robot.say("Two.")\n')["proposal"])["run"]
-                robot.request("program.wait", {"run": later})
-            ran = await called(client, "run", run=theirs)
+            ran = await called(client, "run", run=proposed)
             assert ran["state"] == "done", "though another was begun since"
-            result = await client.call_tool("run", {"run": later + 1})
+            result = await client.call_tool("run", {"run": theirs})
             assert result.is_error and "became of no proposal" in str(result.content)
 
     anyio.run(story)
