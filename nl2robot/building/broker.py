@@ -157,7 +157,8 @@ class Broker:
         """Hear what is said there, from now on; `+` and `#` stand for levels."""
         with self._lock:
             self._topics.add(topic)
-        if self.connected:
+            connected = self.connected
+        if connected:
             self._client.subscribe(topic, qos=1)
 
     def leave(self, topic: str) -> None:
@@ -177,12 +178,12 @@ class Broker:
         if reason.is_failure:
             self._lost(f"it refuses us ({reason})")
             return
-        with self._lock:
+        with self._lock:  # who listens from now on subscribes by itself
             topics = sorted(self._topics)
+            self._connected.set()
         for topic in topics:
             client.subscribe(topic, qos=1)
         client.publish(self.address.topic(ALIVE), "online", qos=1, retain=True)
-        self._connected.set()
         self._because = ""
         self._linked(True, "")
 

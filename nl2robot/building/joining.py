@@ -59,7 +59,10 @@ class House:
         self.broker.close()
 
     def listen_to(self, topics: frozenset[str]) -> None:
-        """Hear these topics besides our own, and no others."""
+        """Hear these topics besides our own, and no others. Our own are never left: by one
+        of them the robot is stopped."""
+        others = frozenset(each for each in topics if not self._reporter.is_own(each))
+        topics = others - frozenset(self._reporter.topics)
         for topic in self._topics - topics:
             self.broker.leave(topic)
         for topic in topics - self._topics:
@@ -70,7 +73,10 @@ class House:
 
     def _on_message(self, topic: str, text: str, before: bool) -> None:
         # What was said before we came is over: nobody stops or begins anything for it now.
-        if not before and not self._reporter.heard(topic, text):
+        if before:
+            return
+        self._reporter.heard(topic, text)
+        if not self._reporter.is_own(topic):
             self._heard(topic, text)
 
     def _on_link(self, connected: bool, because: str) -> None:

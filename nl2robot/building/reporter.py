@@ -22,6 +22,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Final, Protocol
 
 from nl2robot.building.broker import ALIVE, BrokerAddress
+from nl2robot.schedule.topics import is_below
 
 DISCOVERY: Final = "homeassistant"
 """The prefix of Home Assistant's MQTT discovery, unless somebody changed it there."""
@@ -88,15 +89,17 @@ class Reporter:
         self._last[topic] = text
         self._publish(topic, text, kept=True)
 
-    def heard(self, topic: str, text: str) -> bool:
-        """Something was said there; whether it was for us."""
+    def heard(self, topic: str, text: str) -> None:
+        """Something was said there."""
         if topic == self._address.topic(STOP):
             self._stop("A system of the house has stopped it.")
-            return True
-        if topic == BORN and text == "online":
+        elif topic == BORN and text == "online":
             self.connected()
-            return True
-        return topic == BORN
+
+    def is_own(self, topic: str) -> bool:
+        """Whether it is one of the robot's own: what is said there begins nothing, or what it says
+        of a run would begin the next."""
+        return is_below(topic, self._address.prefix) or topic == self._discovery_topic
 
     def discovery(self) -> dict[str, Any]:
         """What Home Assistant wants to know of a device: its entities and their topics."""

@@ -32,7 +32,7 @@ from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
 from nl2robot.schedule.schedule import FILE, Schedule
 from nl2robot.schedule.telling import told
-from nl2robot.schedule.triggers import Trigger, checked, possible
+from nl2robot.schedule.triggers import Trigger, checked, of_others, possible
 from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, cause
@@ -75,8 +75,9 @@ class Timing:
     """Seconds between two looks at it."""
 
 
-def schedule_of(runner: Runner, timing: Timing | None) -> Schedule:
-    """The appointments of a runner's robot, in the folder of its log."""
+def schedule_of(runner: Runner, timing: Timing | None, prefix: str | None = None) -> Schedule:
+    """The appointments of a runner's robot, in the folder of its log. `prefix`: with what its own
+    topics begin at the house's broker, if it is there."""
     log = runner.log.path
 
     def robot() -> str:
@@ -86,6 +87,8 @@ def schedule_of(runner: Runner, timing: Timing | None) -> Schedule:
     def noticed(trigger: Trigger) -> Trigger:
         knowledge = runner.knowledge
         has = knowledge.capabilities.methods if knowledge.capabilities is not None else ()
+        if prefix is not None:
+            of_others(trigger, prefix)
         return possible(checked(trigger), has, [place.name for place in knowledge.world.places])
 
     return Schedule(

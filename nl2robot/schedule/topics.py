@@ -32,3 +32,8 @@ def matches(topic: str, said_at: str) -> bool:
         if index >= len(levels) or level not in ("+", levels[index]):
             return False
     return len(wanted) == len(levels)
+
+
+def is_below(topic: str, prefix: str) -> bool:
+    """Whether it is this prefix or begins with it."""
+    return topic == prefix or topic.startswith(f"{prefix}/")

@@ -25,7 +25,7 @@ from typing import Any, Final, Literal
 import msgspec
 
 from nl2robot.errors import UserError
-from nl2robot.schedule.topics import is_topic, matches
+from nl2robot.schedule.topics import is_below, is_topic, matches
 
 What = Literal["battery", "place", "seen", "heard", "scanned", "pressed", "message"]
 MINUTE: Final = 60.0
@@ -105,6 +105,17 @@ def possible(trigger: Trigger, methods: Collection[str], places: Collection[str]
             f"There is no place “{trigger.place}” here. Name one as the map of this house does."
         )
     return msgspec.structs.replace(trigger, place=named[trigger.place.casefold()])
+
+
+def of_others(trigger: Trigger, prefix: str) -> Trigger:
+    """The same. Raises `BadTrigger` for a message of the robot's own, below this prefix: what it
+    says of a run would begin the next, and so on."""
+    if trigger.what == "message" and is_below(trigger.topic, prefix):
+        raise BadTrigger(
+            f"What is said at {trigger.topic!r} is the robot's own, and begins nothing. Choose a"
+            f" topic that does not begin with {prefix}."
+        )
+    return trigger
 
 
 _OF_A_TEXT: Final[Mapping[str, What]] = {

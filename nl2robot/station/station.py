@@ -346,7 +346,7 @@ def _open(
         review=review_apart if console else review,
     )
 
-    schedule = schedule_of(runner, timing)
+    schedule = schedule_of(runner, timing, broker.prefix if broker is not None else None)
 
     def ask(method: str, arguments: dict[str, Any]) -> Any:
         """What the robot sees or how it is, at no program's and nobody's behest."""

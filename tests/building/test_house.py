@@ -19,6 +19,7 @@ from nl2robot.run.runlog import RunLog
 from nl2robot.schedule.service import Timing
 from nl2robot.station.station import simulated_station
 from robot_api.client import Robot
+from robot_api.errors import InvalidCall
 from sim.world.loading import load_world
 from tests.building.conftest import SOON
 
@@ -140,6 +141,18 @@ def test_a_message_can_stop_the_robot_and_begin_nothing_of_itself(
         while json.loads(nurse.hears()[1])["state"] != "stopped":
             pass
         assert robot.request("program.list", {}) == []
+
+
+@pytest.mark.parametrize("topic", ["ward-a", "ward-a/state", "ward-a/stop", "ward-a/#"])
+def test_what_it_says_itself_cannot_begin_what_it_does(
+    topic: str, house: Any, tmp_path: Path
+) -> None:
+    with living_in(house().port, tmp_path) as robot:
+        trigger = {"what": "message", "topic": topic}
+        with pytest.raises(InvalidCall, match="does not begin with ward-a"):
+            robot.request("schedule.event", {"trigger": trigger})
+        for others in ("ward-ab/state", "+/state", "#"):
+            robot.request("schedule.event", {"trigger": {**trigger, "topic": others}})
 
 
 @pytest.mark.parametrize("address", ["http://broker", "mqtt://robot:secret@broker"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import queue
 from collections.abc import Callable
 from typing import Any
 
@@ -13,6 +14,7 @@ from nl2robot.building.joining import House
 from nl2robot.building.reporter import STATES, Reporter
 from nl2robot.run.state import FOLLOWS
 from robot_api.errors import StopNotConfirmed
+from tests.building.conftest import SOON
 
 ADDRESS = BrokerAddress("broker", 1883, prefix="house/robots/ward a")
 
@@ -58,12 +60,12 @@ def test_what_the_robot_says_and_hears_stays_in_the_room(ward: Ward) -> None:
 
 @pytest.mark.parametrize("text", ["stop", "", "go on"])
 def test_whatever_is_said_at_stop_stops_it(ward: Ward, text: str) -> None:
-    assert ward.reporter.heard("house/robots/ward a/stop", text)
+    ward.reporter.heard("house/robots/ward a/stop", text)
     assert ward.stops == ["A system of the house has stopped it."]
 
 
 def test_home_assistant_finds_it_again_when_it_begins_anew(ward: Ward) -> None:
-    assert ward.reporter.heard("homeassistant/status", "online")
+    ward.reporter.heard("homeassistant/status", "online")
     text, kept = ward.said["homeassistant/device/house_robots_ward_a/config"]
     assert kept
     found = json.loads(text)
@@ -72,11 +74,25 @@ def test_home_assistant_finds_it_again_when_it_begins_anew(ward: Ward) -> None:
     entities = found["components"].values()
     assert {each["platform"] for each in entities} == {"sensor", "event", "button"}
     assert len({each["unique_id"] for each in entities}) == len(entities)
-    assert not ward.reporter.heard("ward-3/call", "pressed")
+
+
+def test_what_a_neighbour_says_is_not_its_own(ward: Ward) -> None:
+    assert ward.reporter.is_own("house/robots/ward a/state")
+    assert ward.reporter.is_own("homeassistant/device/house_robots_ward_a/config")
+    for topic in ("house/robots/ward a2/state", "house/robots", "#", "house/+/+/state"):
+        assert not ward.reporter.is_own(topic)
 
 
 def test_it_is_said_to_be_in_no_state_that_home_assistant_does_not_know() -> None:
     assert set(STATES) == set(FOLLOWS)
+
+
+def until(listener: Any, topic: str, text: str | None = None) -> str:
+    """Until that is said there, or anything."""
+    while True:
+        said_at, said = listener.hears()
+        if said_at == topic and text in (None, said):
+            return str(said)
 
 
 class Stage:
@@ -111,3 +127,49 @@ def test_a_button_of_the_house_stops_the_robot(house: Any, join: Any) -> None:
         assert (topic, json.loads(text)["state"]) == ("ward-a/state", "stopping")
     assert nurse.hears() == ("ward-a/available", "offline")
     assert stage.stops and not stage.listeners
+
+
+def test_stop_goes_on_when_nobody_else_listens_there_any_more(house: Any, join: Any) -> None:
+    """An appointment once listened at the robot's own stop, and was removed."""
+    broker, stage = house(), Stage()
+    nurse = join(broker.port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.listen("ward-a/+")
+    address = BrokerAddress("127.0.0.1", broker.port, prefix="ward-a")
+    with House(address, "Robi", stage) as joined:
+        joined.listen_to(frozenset({"ward-a/stop", "ward-a/#", "call"}))
+        joined.listen_to(frozenset())
+        until(nurse, "ward-a/available", "online")
+        nurse.broker.publish("ward-a/stop", "please")
+        until(nurse, "ward-a/state")
+        broker.goes()
+        broker.comes()
+        until(nurse, "ward-a/available", "online")
+        nurse.broker.publish("ward-a/stop", "once more")
+        until(nurse, "ward-a/stop", "once more")
+        until(nurse, "ward-a/state")
+    assert len(stage.stops) == 2
+
+
+def test_what_the_robot_says_itself_is_no_message_to_it(house: Any, join: Any) -> None:
+    port, stage = house().port, Stage()
+    heard: queue.Queue[tuple[str, str]] = queue.Queue()
+    nurse = join(port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.listen("ward-a/available")
+    with House(
+        BrokerAddress("127.0.0.1", port, prefix="ward-a"),
+        "Robi",
+        stage,
+        lambda topic, text: heard.put((topic, text)),
+    ) as joined:
+        until(nurse, "ward-a/available", "online")
+        joined.listen_to(frozenset({"#"}))
+        stage.listeners[0]("state", {"state": "running"})
+        joined.broker.publish("mine/first", "heard")  # in this order, by the same connection
+        stage.listeners[0]("state", {"state": "idle"})
+        joined.broker.publish("mine/last", "heard")
+        said = [heard.get(timeout=SOON)]
+        while said[-1] != ("mine/last", "heard"):
+            said.append(heard.get(timeout=SOON))
+    assert {topic.partition("/")[0] for topic, _ in said} <= {"mine", "ward"}
