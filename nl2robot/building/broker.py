@@ -12,6 +12,7 @@ cannot be reached is sent when it can be.
 from __future__ import annotations
 
 import os
+import sys
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from urllib.parse import unquote, urlsplit
 
 from nl2robot.errors import UserError
 from nl2robot.schedule.topics import is_topic
+from robot_api.errors import cause
 
 if TYPE_CHECKING:
     from paho.mqtt.client import Client
@@ -38,6 +40,14 @@ KEPT_UNSENT: Final = 1_000
 ASKS_EVERY: Final = 20
 """Seconds between two signs of life: a broker that is gone without a word is noticed after one and
 a half of it."""
+AWAY: Final = (
+    "The broker {address} cannot be reached ({because}). It is tried again and again; check its"
+    " address and the network."
+)
+REFUSED: Final = (
+    "The broker {address} refuses this server ({because}). It is tried again and again; check its"
+    " login: the name in the address, and the password in NL2ROBOT_MQTT_PASSWORD."
+)
 TRIES_AFTER: Final = (1, 60)
 """Seconds before it is tried again, the first time and at most."""
 
@@ -92,7 +102,8 @@ class Broker:
 
     `heard(topic, text, before)` and `linked(connected, because)` are called in its thread, which
     they must not keep: `before` says that it was said before we listened, and kept for us;
-    `because` is a sentence, empty while it is connected.
+    `because` is a sentence, empty while it is connected. That it is away or refuses us is told once
+    each, until it is connected again.
     """
 
     def __init__(
@@ -109,9 +120,13 @@ class Broker:
         self._heard = heard
         self._linked = linked
         self._lock = threading.Lock()
-        self._topics: set[str] = set()
+        self._topics = {address.topic(ALIVE)}
         self._connected = threading.Event()
-        self._because = ""
+        self._refused = False
+        """Whether the connection that ends next was refused, which is told already."""
+        self._told: set[str] = set()
+        """What was told since it was connected last."""
+        self._closing = False
         self._client = self._made(name, password or os.environ.get(PASSWORD))
 
     def _made(self, name: str, password: str | None) -> Client:
@@ -139,6 +154,7 @@ class Broker:
 
     def close(self) -> None:
         """Say that we go, and go."""
+        self._closing = True
         if self.connected:
             last = self._client.publish(self.address.topic(ALIVE), "offline", qos=1, retain=True)
             last.wait_for_publish(timeout=1.0)
@@ -176,7 +192,8 @@ class Broker:
 
     def _on_connect(self, client: Client, _data: Any, _flags: Any, reason: Any, _more: Any) -> None:
         if reason.is_failure:
-            self._lost(f"it refuses us ({reason})")
+            self._refused = True
+            self._lost(REFUSED, str(reason))
             return
         with self._lock:  # who listens from now on subscribes by itself
             topics = sorted(self._topics)
@@ -184,36 +201,38 @@ class Broker:
         for topic in topics:
             client.subscribe(topic, qos=1)
         client.publish(self.address.topic(ALIVE), "online", qos=1, retain=True)
-        self._because = ""
+        self._told.clear()
         self._linked(True, "")
 
     def _on_failure(self, _client: Client, _data: Any) -> None:
-        self._lost("nothing answers there")
+        error = sys.exception()  # paho calls this where it has caught it
+        self._lost(AWAY, cause(error) if error is not None else "nothing answers there")
 
     def _on_disconnect(
         self, _client: Client, _data: Any, _flags: Any, reason: Any, _more: Any
     ) -> None:
-        if reason.is_failure:
-            self._lost(f"it is gone ({reason})")
-        else:
-            self._connected.clear()
-
-    def _lost(self, because: str) -> None:
-        """Told once, however often it is tried."""
         self._connected.clear()
-        if because != self._because:
-            self._because = because
-            self._linked(
-                False,
-                f"The broker {self.address} cannot be reached: {because}. It is tried again and"
-                " again; check its address, its login and the network.",
-            )
+        if reason.is_failure and not self._refused:
+            self._lost(AWAY, str(reason))
+        self._refused = False
 
-    def _on_message(self, _client: Client, _data: Any, message: Any) -> None:
+    def _lost(self, sentence: str, because: str) -> None:
+        self._connected.clear()
+        if sentence not in self._told:
+            self._told.add(sentence)
+            self._linked(False, sentence.format(address=self.address, because=because))
+
+    def _on_message(self, client: Client, _data: Any, message: Any) -> None:
         if len(message.payload) > LONGEST_MESSAGE:
             return
         try:
             text = message.payload.decode("utf-8")
         except UnicodeDecodeError:
             return
-        self._heard(message.topic, text, bool(message.retain))
+        alive = self.address.topic(ALIVE)
+        if message.topic != alive:
+            self._heard(message.topic, text, bool(message.retain))
+        elif text == "offline" and not message.retain and not self._closing:
+            # Of a connection of ours that the broker gives up late, or of a server that is gone
+            # and went by the same prefix.
+            client.publish(alive, "online", qos=1, retain=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import re
+import secrets
 import threading
 from collections.abc import Callable, Mapping
 from contextlib import suppress
@@ -12,6 +13,8 @@ from typing import Any, Protocol
 from nl2robot import __version__
 from nl2robot.building.broker import Broker, BrokerAddress
 from nl2robot.building.reporter import Reporter
+from nl2robot.building.twins import SERVER, Twins
+from nl2robot.schedule.telling import trouble
 from robot_api.errors import RobotError
 
 _log = logging.getLogger(__name__)
@@ -22,6 +25,9 @@ class Stage(Protocol):
 
     @property
     def stop(self) -> Callable[[str], None]: ...
+
+    @property
+    def publish(self) -> Callable[[str, Mapping[str, Any]], None]: ...
 
     def subscribe(
         self, listener: Callable[[str, Mapping[str, Any]], None]
@@ -41,15 +47,24 @@ class House:
     ) -> None:
         self._stage = stage
         self._heard = heard
-        name = re.sub(r"[^A-Za-z0-9]+", "-", address.prefix)
+        # Two clients of one name push each other out for ever, so each process has its own, in the
+        # 23 letters that every broker takes.
+        me = secrets.token_hex(4)
+        name = f"{re.sub(r'[^A-Za-z0-9]+', '-', address.prefix)[-14:]}-{me}"
         self.broker = Broker(address, name, self._on_message, self._on_link)
+        self._server = address.topic(SERVER)
+        self._twins = Twins(
+            me, address.prefix, lambda who: self.broker.publish(self._server, who), self._tell
+        )
+        self._notice: Mapping[str, Any] | None = None
+        """The latest of our own."""
         self._reporter = Reporter(address, robot, __version__, self.broker.publish, self._stop)
         self._topics: frozenset[str] = frozenset()
         # From the first event on: who joins later hears how it stands.
-        self._unsubscribe = stage.subscribe(self._reporter.on_event)
+        self._unsubscribe = stage.subscribe(self._on_event)
 
     def __enter__(self) -> House:
-        for topic in self._reporter.topics:
+        for topic in (*self._reporter.topics, self._server):
             self.broker.listen(topic)
         self.broker.open()
         return self
@@ -76,14 +91,27 @@ class House:
         if before:
             return
         self._reporter.heard(topic, text)
-        if not self._reporter.is_own(topic):
+        if topic == self._server:
+            self._twins.heard(text)
+        elif not self._reporter.is_own(topic):
             self._heard(topic, text)
 
     def _on_link(self, connected: bool, because: str) -> None:
         if connected:
+            self._twins.joined()
             self._reporter.connected()
         else:
-            _log.warning("%s", because)
+            self._tell(because)
+
+    def _on_event(self, kind: str, data: Mapping[str, Any]) -> None:
+        if data is not self._notice:  # the house need not hear, once it can, that it could not
+            self._reporter.on_event(kind, data)
+
+    def _tell(self, sentence: str) -> None:
+        """The people here, by a notice."""
+        _log.warning("%s", sentence)
+        self._notice = trouble(sentence)
+        self._stage.publish("notice", self._notice)
 
     def _stop(self, because: str) -> None:
         """Without keeping the broker until the robot stands."""

@@ -31,9 +31,8 @@ from nl2robot.schedule.findings import decoded, findings_of, news
 from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
 from nl2robot.schedule.schedule import FILE, Schedule
-from nl2robot.schedule.telling import told
+from nl2robot.schedule.telling import told, trouble
 from nl2robot.schedule.triggers import Trigger, checked, of_others, possible
-from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 from robot_api.errors import AccessDenied, LostConnection, NotPossible, RobotError, cause
 from robot_api.local_time import local_zone
@@ -338,9 +337,7 @@ class Timekeeper:
             return
         self._trouble = sentence
         _log.warning("%s", sentence)
-        said = {code: in_language(sentence, code) or sentence for code in languages()}
-        data = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
-        self._publish("notice", {**data, "occurrence": None, "parts": {}, "told": said})
+        self._publish("notice", trouble(sentence))
 
     def _forget(self, book: Book) -> None:
         now = time.monotonic()

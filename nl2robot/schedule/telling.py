@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from typing import Any, Final
 
 import msgspec
 
+from grammar.language import languages
 from nl2robot.schedule.appointments import Appointment, Notice, Occurrence
 from nl2robot.schedule.triggers import ANYBODY, MINUTE, Trigger
 from nl2robot.schedule.words import a_moment, in_words, passing
@@ -13,6 +15,13 @@ from nl2robot.sentences import in_language
 from nl2robot.texts import texts_in
 
 _UTC: Final = "UTC"
+
+
+def trouble(sentence: str) -> dict[str, Any]:
+    """The event `notice` about no appointment: one of our own sentences, in each language."""
+    said = {code: in_language(sentence, code) or sentence for code in languages()}
+    about = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
+    return {**about, "occurrence": None, "parts": {}, "told": said}
 
 
 def told(notice: Notice, language: str = "en", zone: str = _UTC) -> str:

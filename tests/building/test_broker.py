@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import pytest
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from nl2robot.building.broker import BadBroker, BrokerAddress, parse_broker
 from nl2robot.schedule.topics import is_topic
+from tests.building.conftest import SOON
 
 
 def test_a_nurse_call_reaches_the_robot(house: Any, join: Any) -> None:
@@ -65,8 +67,40 @@ def test_a_wrong_password_is_said_to_be_one(house: Any, join: Any) -> None:
     wrong = join(port, "robot", user="robot", password="another word")
     refused, because = wrong.is_told()
     assert not refused
-    assert "refuses us" in because and "login" in because
+    assert "refuses this server (Not authorized)" in because and "login" in because
     assert join(port, "robot-2", user="robot", password="a word of ours").is_told() == (True, "")
+
+
+def test_a_wrong_password_is_told_once_however_often_it_is_tried(house: Any, join: Any) -> None:
+    broker = house({"robot": "a word of ours"})
+    wrong = join(broker.port, "robot", user="robot", password="another word")
+    assert "refuses" in wrong.is_told()[1]
+    refused = threading.Event()
+    client = wrong.broker._client
+    told = client.on_disconnect
+
+    def again(*what: Any) -> None:
+        told(*what)
+        refused.set()
+
+    client.on_disconnect = again
+    assert refused.wait(SOON), "it is not tried again"
+    assert wrong.links.empty()
+
+
+def test_a_connection_that_the_broker_gives_up_late_does_not_take_the_robot_away(
+    house: Any, join: Any
+) -> None:
+    port = house().port
+    robot, late = join(port, "robot"), join(port, "late")
+    assert robot.is_told() == late.is_told() == (True, "")
+    late.broker.listen("ward/robot/available")
+    assert late.hears() == ("ward/robot/available", "online")
+    late.broker.publish("ward/robot/available", "offline", kept=True)
+    assert [late.hears(), late.hears()] == [
+        ("ward/robot/available", "offline"),
+        ("ward/robot/available", "online"),
+    ]
 
 
 def test_what_is_no_text_or_far_too_long_is_not_heard(house: Any, join: Any) -> None:

@@ -101,6 +101,12 @@ class Stage:
     def __init__(self) -> None:
         self.listeners: list[Callable[[str, Any], None]] = []
         self.stops: list[str] = []
+        self.notices: queue.Queue[str] = queue.Queue()
+
+    def publish(self, kind: str, data: Any) -> None:
+        for listener in self.listeners:
+            listener(kind, data)
+        self.notices.put(data["told"]["en"])
 
     def stop(self, because: str) -> None:
         self.stops.append(because)
@@ -122,9 +128,8 @@ def test_a_button_of_the_house_stops_the_robot(house: Any, join: Any) -> None:
         assert nurse.hears() == ("ward-a/available", "online")
         joined.broker.listen("ward-a/stop")  # once more, which changes nothing
         nurse.broker.publish("ward-a/stop", "please")
-        assert nurse.hears() == ("ward-a/stop", "please")
-        topic, text = nurse.hears()
-        assert (topic, json.loads(text)["state"]) == ("ward-a/state", "stopping")
+        until(nurse, "ward-a/stop", "please")
+        assert json.loads(until(nurse, "ward-a/state"))["state"] == "stopping"
     assert nurse.hears() == ("ward-a/available", "offline")
     assert stage.stops and not stage.listeners
 
@@ -173,3 +178,29 @@ def test_what_the_robot_says_itself_is_no_message_to_it(house: Any, join: Any) -
         while said[-1] != ("mine/last", "heard"):
             said.append(heard.get(timeout=SOON))
     assert {topic.partition("/")[0] for topic, _ in said} <= {"mine", "ward"}
+
+
+def test_two_servers_with_one_prefix_stay_and_say_so_once(house: Any, join: Any) -> None:
+    port, first, second = house().port, Stage(), Stage()
+    address = BrokerAddress("127.0.0.1", port, prefix="ward-a")
+    nurse = join(port, "nurse")
+    assert nurse.is_told() == (True, "")
+    nurse.broker.listen("ward-a/#")
+    with House(address, "Robi", first) as one:
+        until(nurse, "ward-a/available", "online")
+        with House(address, "Robi", second) as other:
+            for stage in (first, second):
+                assert "Another server goes by ward-a" in stage.notices.get(timeout=SOON)
+            assert one.broker.connected and other.broker.connected
+        until(nurse, "ward-a/available", "offline")
+        until(nurse, "ward-a/available", "online")  # for one is still there
+    until(nurse, "ward-a/available", "offline")
+    with House(address, "Robi", third := Stage()):
+        until(nurse, "ward-a/available", "online")
+    assert first.notices.empty() and second.notices.empty() and third.notices.empty()
+
+
+def test_a_wrong_password_is_told_to_the_people_here(house: Any) -> None:
+    port, stage = house({"robot": "a word of ours"}).port, Stage()
+    with House(BrokerAddress("127.0.0.1", port, user="robot"), "Robi", stage):
+        assert "refuses this server" in stage.notices.get(timeout=SOON)

@@ -154,6 +154,7 @@ def run(options: argparse.Namespace) -> int:
     world, log = world_of(options), open_log(options.debug)
     with ExitStack() as stack:
         stack.enter_context(kept_for(log, options.log_days * DAY))
+        stack.enter_context(_told_here("nl2robot.building"))
         entrance = stack.enter_context(_entrance(options))
         sound = stack.enter_context(sound_of(options, world, "en"))
         if robot.simulated:
@@ -202,6 +203,18 @@ def run(options: argparse.Namespace) -> int:
         stack.enter_context(swept(lambda: server.dispatcher.moves))
         server.serve_forever(lambda server: _say_where(server, entrance, options))
     return ExitStatus.OK
+
+
+@contextmanager
+def _told_here(part: str) -> Iterator[None]:
+    """Warnings of a part of nl2robot are also told at this terminal: that the broker refuses the
+    password is found out when nobody looks at a page yet."""
+    logger, here = logging.getLogger(part), logging.StreamHandler()
+    logger.addHandler(here)
+    try:
+        yield
+    finally:
+        logger.removeHandler(here)
 
 
 def _fleet(options: argparse.Namespace) -> FleetAddress | None:
