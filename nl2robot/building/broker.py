@@ -12,6 +12,7 @@ cannot be reached is sent when it can be.
 from __future__ import annotations
 
 import os
+import re
 import sys
 import threading
 from collections.abc import Callable
@@ -52,6 +53,10 @@ TRIES_AFTER: Final = (1, 60)
 """Seconds before it is tried again, the first time and at most."""
 
 
+_SCHEME_ALONE: Final = re.compile(r"//|mqtts?:(?!\d)", re.IGNORECASE)
+"""Where somebody meant to write a scheme; a host may be called mqtt, too."""
+
+
 class BadBroker(UserError):
     """It is no address of a broker; the message says what to write instead."""
 
@@ -75,18 +80,40 @@ class BrokerAddress:
 
 def parse_broker(text: str) -> BrokerAddress:
     """Read an address. Raises `BadBroker`."""
+    written = text.strip()
+    if "://" not in written and not _SCHEME_ALONE.match(written):
+        written = f"mqtt://{written}"
     try:
-        parts = urlsplit(text.strip() if "://" in text else f"mqtt://{text.strip()}")
-        host, port = parts.hostname or "", parts.port
+        parts = urlsplit(written)
     except ValueError:
-        host, port, parts = "", None, urlsplit("")
+        parts = urlsplit("mqtt:")  # no host
     if parts.password is not None:
         raise BadBroker(
             "A password must not stand in an address, where others see it. Put it into the"
             f" environment variable {PASSWORD}."
         )
-    prefix = unquote(parts.path).strip("/") or PREFIX
-    if not host or parts.scheme not in PORTS or "?" in text or "#" in text or not is_topic(prefix):
+    if parts.scheme not in PORTS or not written.startswith(f"{parts.scheme}://"):
+        raise BadBroker(
+            f"{text!r} does not begin with mqtt:// or mqtts://. Write it as"
+            " mqtt://HOST:PORT/PREFIX."
+        )
+    try:
+        port = parts.port
+    except ValueError:
+        port = 0
+    if port == 0:
+        raise BadBroker(
+            f"The port in {text!r} is no number from 1 to 65535. Write it as"
+            " mqtt://HOST:PORT/PREFIX."
+        )
+    prefix = unquote(written.partition("://")[2].partition("/")[2]).strip("/") or PREFIX
+    if "+" in prefix or "#" in prefix:
+        raise BadBroker(
+            f"The prefix {prefix!r} has a wildcard, + or #, but the robot says something at one"
+            " place alone. Write it as mqtt://HOST:PORT/PREFIX."
+        )
+    host = parts.hostname or ""
+    if not host or "?" in text or "#" in text or not is_topic(f"{prefix}/{ALIVE}"):
         raise BadBroker(f"{text!r} is no address of a broker. Write it as mqtt://HOST:PORT/PREFIX.")
     return BrokerAddress(
         host=host,

@@ -6,7 +6,7 @@ import logging
 import re
 import secrets
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from typing import Any, Protocol
 
@@ -44,9 +44,13 @@ class House:
         robot: str,
         stage: Stage,
         heard: Callable[[str, str], None] = lambda topic, text: None,
+        stands: Callable[[], Iterable[tuple[str, Mapping[str, Any]]]] = tuple,
     ) -> None:
+        """`stands`: asks the robot how it stands, and answers as its events `battery` and `pose`
+        would; it may take its time."""
         self._stage = stage
         self._heard = heard
+        self._stands = stands
         # Two clients of one name push each other out for ever, so each process has its own, in the
         # 23 letters that every broker takes.
         me = secrets.token_hex(4)
@@ -67,6 +71,7 @@ class House:
         for topic in (*self._reporter.topics, self._server):
             self.broker.listen(topic)
         self.broker.open()
+        threading.Thread(target=self._look, name="how it stands, for MQTT", daemon=True).start()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -83,6 +88,11 @@ class House:
         for topic in topics - self._topics:
             self.broker.listen(topic)
         self._topics = topics
+
+    def _look(self) -> None:
+        """A robot that nobody uses tells of nothing by itself."""
+        for kind, data in self._stands():
+            self._reporter.at_first(kind, data)
 
     # --- told by the broker, in its thread
 

@@ -59,7 +59,6 @@ class Reporter:
         self._version = version
         self._publish = publish
         self._stop = stop
-        self._place: str | None = None
         self._last: dict[str, str] = {}
         """What is kept at the broker, by topic."""
 
@@ -80,9 +79,15 @@ class Reporter:
             self._keep(self._address.topic(kind), json.dumps(dict(data)))
         elif kind == "notice":
             self._publish(self._address.topic(kind), json.dumps(dict(data)))
-        elif kind == "pose" and data.get("place") != self._place:
-            self._place = data.get("place")
-            self._keep(self._address.topic("place"), self._place or "")
+        elif kind == "pose":
+            topic, place = self._address.topic("place"), data.get("place") or ""
+            if self._last.get(topic) != place:
+                self._keep(topic, place)
+
+    def at_first(self, kind: str, data: Mapping[str, Any]) -> None:
+        """How it stood when we asked, unless an event has told it since."""
+        if self._address.topic("place" if kind == "pose" else kind) not in self._last:
+            self.on_event(kind, data)
 
     def _keep(self, topic: str, text: str) -> None:
         """Say it for those as well who come later."""

@@ -14,7 +14,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from nl2robot.building.broker import BrokerAddress
+from nl2robot.building.broker import PREFIX, BrokerAddress
 from nl2robot.building.joining import House
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.fleet.address import FleetAddress
@@ -409,13 +409,22 @@ def _open(
 
     backstage.subscribe(on_event)
     if broker is not None:
-        name = driver.capabilities().name
+        # Every simulated robot is called the same; the house may have several.
+        alike = simulation is not None and broker.prefix != PREFIX
+        name = broker.prefix.rpartition("/")[2] if alike else driver.capabilities().name
+
+        def stands() -> Iterator[tuple[str, Mapping[str, Any]]]:
+            with suppress(RobotError):
+                charging = runner.present.state.charging
+                yield "battery", {"percent": ask("battery", {}), "charging": charging}
+            with suppress(RobotError):
+                yield "pose", {"place": ask("location", {}).place}
 
         def said_in_house(topic: str, text: str) -> None:
             if keeper is not None:
                 keeper.note("message", {"topic": topic, "text": text})
 
-        house = House(broker, name, backstage, said_in_house)
+        house = House(broker, name, backstage, said_in_house, stands)
     if company is not None:
         company.watch(backstage)
     added = console(backstage) if console else None

@@ -120,6 +120,7 @@ def test_what_is_no_text_or_far_too_long_is_not_heard(house: Any, join: Any) -> 
     ("text", "address"),
     [
         ("broker", BrokerAddress("broker", 1883)),
+        ("mqtt:1884/ward-a", BrokerAddress("mqtt", 1884, prefix="ward-a")),
         ("mqtt://broker:1884/ward-a", BrokerAddress("broker", 1884, prefix="ward-a")),
         (
             "mqtts://robot@broker.example/house/robots/1",
@@ -132,11 +133,26 @@ def test_addresses(text: str, address: BrokerAddress) -> None:
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["", "http://broker", "mqtt://", "mqtt://b:x", "mqtt://b/#", "mqtt://b/a?b", "mqtt://b:0x"],
+    ("text", "because"),
+    [
+        ("", "is no address"),
+        ("mqtt://", "is no address"),
+        ("mqtt://b/a?b", "is no address"),
+        ("mqtt://[b", "is no address"),
+        ("mqtt://b/" + "x" * 195, "is no address"),
+        ("http://broker", "does not begin with mqtt://"),
+        ("//broker", "does not begin with mqtt://"),
+        ("mqtt:broker/ward-a", "does not begin with mqtt://"),
+        ("mqtts:/broker/ward-a", "does not begin with mqtt://"),
+        ("mqtt://b:x", "port in 'mqtt://b:x' is no number from 1 to 65535"),
+        ("mqtt://b:0", "no number from 1"),
+        ("mqtt://b:65536/ward-a", "no number from 1"),
+        ("mqtt://b/#", "'#' has a wildcard"),
+        ("mqtt://b/house/+/robot", "'house/[+]/robot' has a wildcard"),
+    ],
 )
-def test_what_is_no_address_is_said_to_be_none(text: str) -> None:
-    with pytest.raises(BadBroker, match="Write it as"):
+def test_what_is_no_address_is_told_why(text: str, because: str) -> None:
+    with pytest.raises(BadBroker, match=f"{because}.*Write it as mqtt://HOST"):
         parse_broker(text)
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import queue
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from nl2robot.building.broker import BrokerAddress
+from nl2robot.building.broker import PASSWORD, BrokerAddress
 from nl2robot.cli import main as cli
 from nl2robot.errors import ExitStatus
 from nl2robot.review.review import digest
@@ -22,6 +22,7 @@ from robot_api.client import Robot
 from robot_api.errors import InvalidCall
 from sim.world.loading import load_world
 from tests.building.conftest import SOON
+from tests.nl2robot.conftest import Command
 
 GREETING = 'robot.say("I am coming.")\n'
 
@@ -85,9 +86,14 @@ def test_the_house_hears_how_it_stands_and_what_was_not_done(
         nurse = join(port, "nurse")
         assert nurse.is_told() == (True, "")
         nurse.broker.listen("ward-a/+")
-        heard = dict(nurse.hears() for _ in range(2))
-        while not {"ward-a/available", "ward-a/state"} <= heard.keys():
+        nurse.broker.listen("homeassistant/device/ward-a/config")
+        kept = {f"ward-a/{each}" for each in ("available", "state", "battery", "place")}
+        heard: dict[str, str] = {}
+        while not kept | {"homeassistant/device/ward-a/config"} <= heard.keys():
             heard |= dict([nurse.hears()])
+        assert json.loads(heard["ward-a/battery"])["percent"] > 0
+        assert heard["ward-a/place"] == "charger"
+        assert json.loads(heard["homeassistant/device/ward-a/config"])["device"]["name"] == "ward-a"
         assert heard["ward-a/available"] == "online"
         assert json.loads(heard["ward-a/state"])["state"] in ("idle", "charging")
         given = {
@@ -161,3 +167,15 @@ def test_serve_says_what_is_wrong_with_an_address(
 ) -> None:
     assert cli.main(["serve", "--port", "0", "--mqtt", address]) == ExitStatus.BAD_INPUT
     assert "mqtt://HOST" in (said := capsys.readouterr().err) or "NL2ROBOT_MQTT_PASSWORD" in said
+
+
+def test_serve_tells_at_its_terminal_that_the_broker_refuses_the_password(
+    house: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NL2ROBOT_HOME", str(tmp_path / "home"))
+    monkeypatch.setenv(PASSWORD, "another word")
+    port = house({"robot": "a word of ours"}).port
+    address = f"mqtt://robot@127.0.0.1:{port}/ward-a"
+    typed = ("serve", "--world", "ward", "--port", "0", "--mqtt", address)
+    with closing(Command(typed, False, None, "false")) as server:
+        server.until("refuses this server (Not authorized)")
