@@ -151,6 +151,8 @@ class Broker:
         self._connected = threading.Event()
         self._refused = False
         """Whether the connection that ends next was refused, which is told already."""
+        self._subscribing: int | None = None
+        """The number of what we said first on this connection: where we listen."""
         self._told: set[str] = set()
         """What was told since it was connected last."""
         self._closing = False
@@ -171,6 +173,7 @@ class Broker:
         client.on_connect = self._on_connect
         client.on_connect_fail = self._on_failure
         client.on_disconnect = self._on_disconnect
+        client.on_subscribe = self._on_subscribe
         client.on_message = self._on_message
         return client
 
@@ -225,11 +228,16 @@ class Broker:
         with self._lock:  # who listens from now on subscribes by itself
             topics = sorted(self._topics)
             self._connected.set()
-        for topic in topics:
-            client.subscribe(topic, qos=1)
+        _, self._subscribing = client.subscribe([(topic, 1) for topic in topics])
         client.publish(self.address.topic(ALIVE), "online", qos=1, retain=True)
-        self._told.clear()
-        self._linked(True, "")
+
+    def _on_subscribe(
+        self, _client: Client, _data: Any, number: int, _reasons: Any, _more: Any
+    ) -> None:
+        if number == self._subscribing:  # from now on nothing escapes us
+            self._subscribing = None
+            self._told.clear()
+            self._linked(True, "")
 
     def _on_failure(self, _client: Client, _data: Any) -> None:
         error = sys.exception()  # paho calls this where it has caught it
