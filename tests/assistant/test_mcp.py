@@ -7,7 +7,8 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,12 @@ async def assistant(served: Served) -> AsyncIterator[Client]:
         yield client
 
 
+def play(story: Callable[..., Awaitable[None]], *about: Any) -> None:
+    """In a thread of its own: in this one a browser's loop may be running."""
+    with ThreadPoolExecutor(1) as apart:
+        apart.submit(anyio.run, story, *about).result()
+
+
 async def called(client: Client, tool: str, **given: Any) -> Any:
     result = await client.call_tool(tool, given)
     assert not result.is_error, result.content
@@ -108,7 +115,7 @@ def test_a_sentence_is_tried_proposed_approved_and_done(served: Served) -> None:
             ran = await called(client, "run", run=decided["run"])
             assert ran["state"] == "done" and "Hello!" in ran["answers"][0]
 
-    anyio.run(story)
+    play(story)
 
 
 def test_a_no_is_told_with_its_reason(served: Served) -> None:
@@ -125,7 +132,7 @@ def test_a_no_is_told_with_its_reason(served: Served) -> None:
                 "state"
             ] == "withdrawn"
 
-    anyio.run(story)
+    play(story)
 
 
 def test_whatever_a_name_says_there_is_no_way_to_approve(here: Served) -> None:
@@ -141,7 +148,7 @@ def test_whatever_a_name_says_there_is_no_way_to_approve(here: Served) -> None:
             moving = {name for name, tool in tools.items() if not tool.annotations.read_only_hint}  # type: ignore[union-attr]
             assert moving == {"propose", "withdraw", "stop"}
 
-    anyio.run(story)
+    play(story)
     link = connected(f"ws://{here.address}", None)
     try:
         # Nor if its own program were turned against the server: it came in as an assistant.
@@ -177,7 +184,7 @@ def test_it_may_stop_the_robot_at_any_time(served: Served) -> None:
                 ended = await called(client, "run", run=run)
                 assert ended["state"] == "stopped"
 
-    anyio.run(story)
+    play(story)
 
 
 def test_errors_are_sentences(served: Served) -> None:
@@ -192,7 +199,7 @@ def test_errors_are_sentences(served: Served) -> None:
             guide = (await client.read_resource("robot://programs")).contents[0].text  # type: ignore[union-attr]
             assert "def goto(self" in guide and "robot.places" in guide
 
-    anyio.run(story)
+    play(story)
 
 
 @contextmanager
@@ -227,7 +234,7 @@ def test_over_http_for_several_and_for_no_web_page(served: Served) -> None:
                 assert (await called(client, "robot_state"))["state"]
 
     with over_http(served) as url:
-        anyio.run(story, url)
+        play(story, url)
         for headers in ({"Origin": "https://evil.example"}, {"Host": "evil.example"}):
             answer = httpx.post(url, json={}, headers=headers)
             assert answer.status_code in (403, 421), "a page of another site"
@@ -257,7 +264,7 @@ def test_it_may_come_before_the_server_does(tmp_path: Path) -> None:
             with serving(tmp_path, "--port", str(port)):
                 assert (await called(client, "robot_state"))["state"]
 
-    anyio.run(story)
+    play(story)
 
 
 def test_what_the_dry_run_finds_of_people_is_not_told(served: Served) -> None:
@@ -267,7 +274,7 @@ def test_what_the_dry_run_finds_of_people_is_not_told(served: Served) -> None:
             tried = await called(client, "check", program=asks)
             assert {*tried["says"]} == {"(put together when it runs)", "Hello!"}
 
-    anyio.run(story)
+    play(story)
 
 
 def test_runs_that_people_began_are_none_of_its_business(served: Served) -> None:
@@ -287,7 +294,7 @@ def test_runs_that_people_began_are_none_of_its_business(served: Served) -> None
             result = await client.call_tool("run", {"run": theirs})
             assert result.is_error and "became of no proposal" in str(result.content)
 
-    anyio.run(story)
+    play(story)
 
 
 def test_what_is_for_later_is_said_to_be_for_people(served: Served) -> None:
@@ -298,4 +305,4 @@ def test_what_is_for_later_is_said_to_be_for_people(served: Served) -> None:
             assert made["program"] is None and made["status"] == "rejected"
             assert "You cannot propose that" in made["question_or_reason"]
 
-    anyio.run(story)
+    play(story)

@@ -106,7 +106,7 @@ def test_an_event_is_chosen_at_the_desk(look: Look, ward: Ward, picture: Picture
     page = look("/")
     say(page, "say it is time for tea")
     read_all(page)
-    page.get_by_role("button", name="Later or repeatedly …").click()
+    page.get_by_role("button", name="Later …").click()
     form = page.get_by_role("dialog")
     form.get_by_role("combobox", name="It begins").select_option("event")
     expect(page.get_by_role("dialog", name="When something happens")).to_be_visible()
