@@ -6,11 +6,15 @@ import json
 import stat
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from nl2robot.cli import main as cli
+from nl2robot.cli.operator import Operator
+from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
 from nl2robot.fleet.address import BadFleet, FleetAddress, parse_fleet
+from nl2robot.fleet.book import Errand
 from nl2robot.fleet.key import VARIABLE
 from nl2robot.run.runlog import RunLog
 from nl2robot.station.station import simulated_station
@@ -109,4 +113,40 @@ def test_a_fleet_of_one_lists_runs_and_stops(home: Path, capsys: Said) -> None:
         assert "it stands" in capsys.readouterr().out
         assert cli.main(["fleet", "stop", "Eve", *here]) == ExitStatus.BAD_INPUT
         assert "There is no robot “Eve”" in capsys.readouterr().err
+    log.close()
+
+
+@pytest.mark.parametrize("begun", [True, False], ids=["begun", "looked for"])
+def test_ctrl_c_calls_off_what_was_sent_or_stops_who_does_it(
+    home: Path, capsys: Said, monkeypatch: pytest.MonkeyPatch, begun: bool
+) -> None:
+    def interrupted(operator: Operator, terminal: Terminal, errand: Errand) -> None:
+        while begun and errand.state != "begun":
+            waits = {"errand": errand.id, "timeout": 1}
+            errand = msgspec.convert(operator.robot.request("fleet.wait", waits), Errand)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("nl2robot.cli.commands.fleet.command._watched", interrupted)
+    monkeypatch.setattr("builtins.input", lambda *_: "approve")
+    log = RunLog(home / "runs.sqlite")
+    program = home / "patrol.py"
+    program.write_text('while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n')
+    fleet = FleetAddress("Ada", key=b"k" * 40)
+    with (
+        simulated_station(load_world("ward"), log, fleet=fleet) as station,
+        station.connect() as robot,
+    ):
+        while not all(each["known"] for each in robot.request("fleet.list", {})["members"]):
+            pass
+        if not begun:  # whoever was just stopped is given nothing
+            robot.stop()
+            while robot.request("fleet.list", {})["members"][0]["standing"].get("waits") is None:
+                pass
+        here = ("--robot", f"ws://{station.address}")
+        ran = cli.main(["fleet", "run", "--program", str(program), *here])
+        assert ran == ExitStatus.INTERRUPTED
+        [errand] = robot.request("fleet.list", {})["errands"]
+        over = robot.request("fleet.wait", {"errand": errand["id"], "timeout": 60})
+        assert over["state"] == ("stopped" if begun else "called_off")
+        assert [run.status for run in log.runs()] == (["stopped"] if begun else [])
     log.close()

@@ -165,13 +165,11 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
         **({"robot": options.on} if options.on else {}),
     }
     errand = msgspec.convert(operator.robot.request("fleet.run", given), Errand)
-    robot = None
-    while errand.open:
-        if errand.robot_name is not None and errand.robot_name != robot:
-            robot = errand.robot_name
-            show(visible(words["fleet_given"].format(robot=robot)), markup=False)
-        waits = {"errand": errand.id, "timeout": 1.0 if robot is None else WAITS}
-        errand = msgspec.convert(operator.robot.request("fleet.wait", waits), Errand)
+    try:
+        errand, robot = _watched(operator, terminal, errand)
+    except KeyboardInterrupt:
+        _called_back(operator, errand.id)
+        raise
     if errand.robot_name is not None and robot is None:
         show(visible(words["fleet_given"].format(robot=errand.robot_name)), markup=False)
     for name, why in errand.refused.items():
@@ -179,6 +177,31 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
     told = _errand_state(errand, words)
     show(visible(f"{told}. {errand.message or ''}".strip()), markup=False)
     return ExitStatus.OK if errand.state == "done" else ExitStatus.FAILED
+
+
+def _watched(operator: Operator, terminal: Terminal, errand: Errand) -> tuple[Errand, str | None]:
+    """The errand when it is over, and the robot that was told of."""
+    robot = None
+    while errand.open:
+        if errand.robot_name is not None and errand.robot_name != robot:
+            robot = errand.robot_name
+            told = terminal.words["fleet_given"].format(robot=robot)
+            terminal.console.print(visible(told), markup=False)
+        waits = {"errand": errand.id, "timeout": 1.0 if robot is None else WAITS}
+        errand = msgspec.convert(operator.robot.request("fleet.wait", waits), Errand)
+    return errand, robot
+
+
+def _called_back(operator: Operator, errand: str) -> None:
+    """Whoever approved it does not want it any more: it is not begun, or the robot that does it is
+    stopped."""
+    try:
+        operator.robot.request("fleet.call_off", {"errand": errand})
+    except InvalidCall:  # a robot was told to begin it, or it is over
+        now = operator.robot.request("fleet.wait", {"errand": errand, "timeout": 0})
+        found = msgspec.convert(now, Errand)
+        if found.open and found.robot is not None:
+            operator.robot.request("fleet.stop", {"robot": found.robot})
 
 
 def _stop(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> int:
