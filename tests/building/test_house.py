@@ -142,6 +142,7 @@ def test_a_message_can_stop_the_robot_and_begin_nothing_of_itself(
     assert nurse.is_told() == (True, "")
     nurse.broker.listen("ward-a/state")
     with living_in(port, tmp_path) as robot:
+        nurse.hears()  # it has joined, and listens
         nurse.broker.publish("ward-a/program", GREETING)
         nurse.broker.publish("ward-a/stop", "")
         while json.loads(nurse.hears()[1])["state"] != "stopped":
