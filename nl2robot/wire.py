@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Final
 
 import msgspec
 
@@ -14,6 +14,13 @@ from robot_api.server import Context as CallContext
 from robot_api.server import Service
 from robot_api.serving.dispatch import Lane
 from robot_api.serving.roles import Right
+
+NUMBER: Final = {"type": "integer", "minimum": 1}
+"""Of a run, an appointment, a proposal."""
+LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
+NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
+"""Of whoever does something, or of a robot."""
+SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 
 
 def service(

@@ -6,7 +6,6 @@ has nothing done twice. The robot's id lives here as well: who has lost the book
 
 from __future__ import annotations
 
-import os
 import secrets
 import sqlite3
 import threading
@@ -19,6 +18,7 @@ import msgspec
 
 from nl2robot.errors import UserError
 from nl2robot.fleet.messages import Stand, ZoneEntry
+from nl2robot.private_database import private_database
 from robot_api.errors import cause
 
 FILE: Final = "fleet.sqlite"
@@ -100,15 +100,7 @@ class FleetBook:
         self.path = Path(path)
         self._lock = threading.RLock()
         with self._trouble():
-            if str(path) != ":memory:":
-                self.path.parent.mkdir(parents=True, exist_ok=True)
-                # Before SQLite makes it, so that it is never anybody else's to read.
-                os.close(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o600))
-                self.path.chmod(0o600)
-            self._db = sqlite3.connect(
-                path, check_same_thread=False, isolation_level=None, timeout=5.0
-            )
-            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db = private_database(path)
             self._db.execute("PRAGMA synchronous=FULL")  # a power cut forgets nothing promised
             self._db.executescript(_SCHEMA)
             given = ("id", secrets.token_hex(6))

@@ -16,7 +16,7 @@ from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import digest, review
 from nl2robot.run.runner import Runner
 from nl2robot.schedule.findings import encoded, findings_of
-from nl2robot.wire import service, service_of_call
+from nl2robot.wire import NAME, SHA256, service, service_of_call
 from robot_api.errors import AccessDenied
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
@@ -28,8 +28,6 @@ EVENTS: Final[Mapping[str, str]] = {
 }
 WAITS: Final = 60.0
 """Seconds that `fleet.wait` waits at most."""
-_NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
-_SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 _ID: Final = {"type": "string", "pattern": "^[0-9a-f]{16}$"}
 
 
@@ -128,11 +126,11 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             " before it begins. Returns what is to be done, which `fleet.wait` waits for.",
             {
                 "program": {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM},
-                "sha256": _SHA256,
-                "by": _NAME,
+                "sha256": SHA256,
+                "by": NAME,
                 "sentence": {"type": "string", "maxLength": MAX_TEXT},
                 "language": {"type": "string", "pattern": "^[a-z]{2}$"},
-                "robot": _NAME,
+                "robot": NAME,
             },
             "program sha256 by",
             result=Errand,
@@ -161,7 +159,7 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             stopped,
             "Stop all robots of the fleet, or the `robot` of that name or id; returns what each"
             " says to that. One that has not `answered` may still move.",
-            {"robot": _NAME},
+            {"robot": NAME},
             right="know",
             lane="control",
             result=list[Told],

@@ -7,15 +7,11 @@ from typing import Any, Final
 
 from nl2robot.errors import UserError
 from nl2robot.proposals.proposals import HOLDS, Made, Proposal, Proposals
-from nl2robot.wire import service, service_of_call
+from nl2robot.wire import LANGUAGE, NAME, NUMBER, SHA256, service, service_of_call
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
 from sandbox.limits import MAX_PROGRAM
 
-_NUMBER: Final = {"type": "integer", "minimum": 1}
-_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
-_NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
-_SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 _TEXT: Final = {"type": "string", "maxLength": MAX_TEXT}
 
 
@@ -58,9 +54,9 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
             {
                 "program": {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM},
                 "sentence": {**_TEXT, "minLength": 1},
-                "by": _NAME,
+                "by": NAME,
                 "why": _TEXT,
-                "language": _LANGUAGE,
+                "language": LANGUAGE,
             },
             "program sentence by",
             right="propose",
@@ -75,7 +71,7 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
         "proposal.show": service(
             lambda p: proposals.one(p["id"]),
             "Tell how a proposal stands.",
-            {"id": _NUMBER},
+            {"id": NUMBER},
             "id",
             observes=True,
             result=Proposal,
@@ -83,7 +79,7 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
         "proposal.wait": service_of_call(
             waited,
             "Wait until a proposal is decided, `timeout` seconds at most, and tell how it stands.",
-            {"id": _NUMBER, "timeout": {"type": "number", "minimum": 0, "maximum": HOLDS}},
+            {"id": NUMBER, "timeout": {"type": "number", "minimum": 0, "maximum": HOLDS}},
             "id",
             observes=True,
             for_caller=True,
@@ -93,7 +89,7 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
         "proposal.withdraw": service_of_call(
             withdrawn,
             "Take back a proposal that is not decided, and one's own.",
-            {"id": _NUMBER},
+            {"id": NUMBER},
             "id",
             right="propose",
             result=Proposal,
@@ -105,14 +101,14 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
             "Approve exactly the proposed program with this SHA-256, and begin it at once; `run` is"
             " its run. One that does not come to its end in the dry run is refused unless somebody"
             " `insists`.",
-            {"id": _NUMBER, "sha256": _SHA256, "by": _NAME, "insists": {"type": "boolean"}},
+            {"id": NUMBER, "sha256": SHA256, "by": NAME, "insists": {"type": "boolean"}},
             "id sha256 by",
             result=Proposal,
         ),
         "proposal.decline": service(
             lambda p: proposals.decline(p["id"], p["by"], p.get("reason")),
             "Say no to a proposal, and why.",
-            {"id": _NUMBER, "by": _NAME, "reason": _TEXT},
+            {"id": NUMBER, "by": NAME, "reason": _TEXT},
             "id by",
             result=Proposal,
         ),

@@ -9,7 +9,6 @@ the robot, because what is not logged is not done.
 from __future__ import annotations
 
 import json
-import os
 import sqlite3
 import threading
 import time
@@ -22,6 +21,7 @@ from typing import Any
 import msgspec
 
 from nl2robot.errors import UserError
+from nl2robot.private_database import IN_MEMORY, private_database
 from nl2robot.run.log_file import LogFile, Tampered
 from nl2robot.run.process import lives, own_process
 from robot_api.errors import cause
@@ -180,12 +180,6 @@ _TELLING = (
 """The columns of a run that may be empty and tell of people."""
 
 
-def _private(path: Path) -> None:
-    """The file, made if missing, for nobody else: it tells of patients."""
-    os.close(os.open(path, os.O_RDWR | os.O_CREAT, 0o600))
-    path.chmod(0o600)
-
-
 class RunLog:
     """The log in one file; safe to use from several threads and processes."""
 
@@ -193,15 +187,10 @@ class RunLog:
         self.path = Path(path)
         self._lock = threading.Lock()
         with self._trouble():
-            if str(path) != ":memory:":
-                self.path.parent.mkdir(parents=True, exist_ok=True)
-                _private(self.path)
-            self._db = sqlite3.connect(path, check_same_thread=False, isolation_level=None)
-            self._db.execute("PRAGMA journal_mode=WAL")
-            self._db.execute("PRAGMA busy_timeout=5000")
+            self._db = private_database(path)
             self._db.execute("PRAGMA secure_delete=ON")  # what is deleted can be read nowhere
             self._bring_up_to_date()
-            self._file = LogFile(self.path) if str(path) != ":memory:" else None
+            self._file = LogFile(self.path) if str(path) != IN_MEMORY else None
             if self._file is not None:
                 self._file.note()
 

@@ -8,7 +8,6 @@ among `begun`. Several processes may use the file.
 
 from __future__ import annotations
 
-import os
 import sqlite3
 import threading
 import time
@@ -20,6 +19,7 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.errors import UserError
+from nl2robot.private_database import private_database
 from nl2robot.run.process import lives, own_process
 from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, State, Why
 from nl2robot.schedule.rhythm import Rhythm
@@ -80,7 +80,6 @@ CREATE TABLE IF NOT EXISTS notices (
 );
 """
 _LARGEST: Final = 2**63 - 1
-_BUSY_SECONDS: Final = 5.0
 
 
 class BookError(UserError):
@@ -103,15 +102,7 @@ class Book:
         self._clock = clock
         self._lock = threading.RLock()
         with self._trouble():
-            if str(path) != ":memory:":
-                self.path.parent.mkdir(parents=True, exist_ok=True)
-                # Before SQLite makes it, so that it is never anybody else's to read.
-                os.close(os.open(self.path, os.O_RDWR | os.O_CREAT, 0o600))
-                self.path.chmod(0o600)
-            self._db = sqlite3.connect(
-                path, check_same_thread=False, isolation_level=None, timeout=_BUSY_SECONDS
-            )
-            self._db.execute("PRAGMA journal_mode=WAL")
+            self._db = private_database(path)
             self._db.execute("PRAGMA secure_delete=ON")  # what is deleted can be read nowhere
             [version] = self._db.execute("PRAGMA user_version").fetchone()
             if version < _VERSION:

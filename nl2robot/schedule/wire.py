@@ -17,18 +17,14 @@ from nl2robot.schedule.schedule import Came, Listed, Schedule, Told
 from nl2robot.schedule.telling import happening
 from nl2robot.schedule.triggers import LONGEST, SHORTEST, Trigger, What
 from nl2robot.schedule.week import Week, week_of
-from nl2robot.wire import an_object, service
+from nl2robot.wire import LANGUAGE, NAME, NUMBER, SHA256, an_object, service
 from robot_api.local_time import local_zone
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
 
 LONGEST_PROGRAM: Final = 65_536
-_NUMBER: Final = {"type": "integer", "minimum": 1}
-_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
 _LAST: Final = {"type": "integer", "minimum": 1, "maximum": 1000}
 _DATE: Final = {"type": "string", "pattern": "^[0-9]{4}-[0-9]{2}-[0-9]{2}$"}
-_NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
-_SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 _TIME: Final = {"type": ["number", "null"]}
 _RHYTHM: Final = {
     **an_object(
@@ -110,7 +106,7 @@ def schedule_services(
             lambda p: schedule.listed(p.get("language", "en")),
             "List the appointments of this robot: approved programs with the times at which they"
             " are done, when they come next, and which of those were called off.",
-            {"language": _LANGUAGE},
+            {"language": LANGUAGE},
             observes=True,
             result=list[Listed],
         ),
@@ -125,10 +121,10 @@ def schedule_services(
             " finds something new, it waits for a new approval.",
             {
                 "program": {"type": "string", "maxLength": LONGEST_PROGRAM},
-                "sha256": _SHA256,
-                "by": _NAME,
+                "sha256": SHA256,
+                "by": NAME,
                 "sentence": {"type": "string", "minLength": 1, "maxLength": MAX_TEXT},
-                "language": _LANGUAGE,
+                "language": LANGUAGE,
                 "rhythm": _RHYTHM,
                 "trigger": _TRIGGER,
                 "plan": {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM},
@@ -151,9 +147,9 @@ def schedule_services(
             "Approve an appointment anew, as its program is reviewed now: one whose approval has"
             " ended, or whose review came out another way.",
             {
-                "id": _NUMBER,
-                "sha256": _SHA256,
-                "by": _NAME,
+                "id": NUMBER,
+                "sha256": SHA256,
+                "by": NAME,
                 "until": _TIME,
                 "insists": {"type": "boolean"},
             },
@@ -163,21 +159,21 @@ def schedule_services(
         "schedule.pause": service(
             lambda p: paused(p, True),
             "Have an appointment skipped until it is resumed.",
-            {"id": _NUMBER},
+            {"id": NUMBER},
             "id",
             result=Appointment,
         ),
         "schedule.resume": service(
             lambda p: paused(p, False),
             "Have a paused appointment done again from its next time on.",
-            {"id": _NUMBER},
+            {"id": NUMBER},
             "id",
             result=Appointment,
         ),
         "schedule.remove": service(
             lambda p: schedule.remove(p["id"]),
             "Remove an appointment; what was done is still told. A run that goes on goes on.",
-            {"id": _NUMBER},
+            {"id": NUMBER},
             "id",
             result=None,
         ),
@@ -185,7 +181,7 @@ def schedule_services(
             skipped,
             "Call off the next time of an appointment, or all of a day (`date`); with `back`, have"
             " them done after all. Returns the times, in seconds since the epoch.",
-            {"id": _NUMBER, "date": _DATE, "back": {"type": "boolean"}},
+            {"id": NUMBER, "date": _DATE, "back": {"type": "boolean"}},
             "id",
             result=list[float],
         ),
@@ -209,7 +205,7 @@ def schedule_services(
             "Tell how an event that shall begin a program is kept: its place by the name that it"
             " has in this house, and what it is in words. Refuses what this robot would never"
             " notice. Nothing is planned.",
-            {"trigger": {**_TRIGGER, "type": "object"}, "language": _LANGUAGE},
+            {"trigger": {**_TRIGGER, "type": "object"}, "language": LANGUAGE},
             "trigger",
             result=Happens,
         ),
@@ -217,7 +213,7 @@ def schedule_services(
             lambda p: schedule.history(p.get("id"), p.get("last", 100), p.get("language", "en")),
             "List the latest times that came, of an appointment or all, and what became of each;"
             " the newest first. Times to come that were called off are among them.",
-            {"id": _NUMBER, "last": _LAST, "language": _LANGUAGE},
+            {"id": NUMBER, "last": _LAST, "language": LANGUAGE},
             observes=True,
             result=list[Came],
         ),
@@ -228,7 +224,7 @@ def schedule_services(
             "Tell the week with that day in it (this one, without a `date`), from Monday to Sunday:"
             " each time with what came of it or whether it will be done (coming, called off,"
             " paused, not approved), and when it is by the clocks of the house.",
-            {"date": _DATE, "language": _LANGUAGE},
+            {"date": _DATE, "language": LANGUAGE},
             observes=True,
             result=Week,
         ),
@@ -241,7 +237,7 @@ def schedule_services(
             " (yes, no, unclear, silent, away: not found, gone: not there any more when asked,"
             " broken_off, or what became of a time at which it was not said). A program reminds"
             " somebody if it keeps the answer to a question of its own as `reminder_done`.",
-            {"since": {"type": "number"}, "last": _LAST, "language": _LANGUAGE},
+            {"since": {"type": "number"}, "last": _LAST, "language": LANGUAGE},
             observes=True,
             result=list[Reminder],
         ),
@@ -254,7 +250,7 @@ def schedule_services(
             {
                 "after": {"type": "integer", "minimum": 0},
                 "last": _LAST,
-                "language": _LANGUAGE,
+                "language": LANGUAGE,
             },
             observes=True,
             result=list[Told],

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-import os
 import secrets
 import sqlite3
 import threading
@@ -23,6 +22,7 @@ from typing import Final
 import msgspec
 
 from nl2robot.errors import UserError
+from nl2robot.private_database import private_database
 from nl2robot.station import passwords
 from robot_api.errors import cause
 from robot_api.serving.access import Guest, new_token
@@ -154,11 +154,7 @@ class Accounts:
         self._lock = threading.RLock()
         self._signing_in = threading.Lock()
         with _readable(file):
-            # Before SQLite makes it, so that it is never anybody else's to read.
-            os.close(os.open(file, os.O_RDWR | os.O_CREAT, 0o600))
-            file.chmod(0o600)
-            self._database = sqlite3.connect(file, check_same_thread=False, timeout=5.0)
-            self._database.execute("PRAGMA journal_mode = WAL")
+            self._database = private_database(file, transactions=True)
             self._database.execute("PRAGMA foreign_keys = ON")
             self._database.executescript(_SCHEMA)
         self._sessions: dict[str, _Held] = {}

@@ -27,7 +27,16 @@ from nl2robot.translate.talks import Talks
 from nl2robot.translate.thinking import EVENT, Thought, published
 from nl2robot.translate.translation import translate
 from nl2robot.voice.services import Microphones, voice_services
-from nl2robot.wire import an_object, schema_of, service, service_of_call
+from nl2robot.wire import (
+    LANGUAGE,
+    NAME,
+    NUMBER,
+    SHA256,
+    an_object,
+    schema_of,
+    service,
+    service_of_call,
+)
 from robot_api.driver import StopFlag
 from robot_api.errors import Stopped
 from robot_api.methods import MAX_TEXT
@@ -40,8 +49,6 @@ SECONDS_TO_END = 2.0
 _STRING = {"type": "string", "maxLength": MAX_TEXT}
 _MAYBE = {"type": ["string", "null"], "maxLength": 4 * LONGEST_PROGRAM}
 _PROGRAM = {"type": "string", "maxLength": LONGEST_PROGRAM}
-_LANGUAGE = {"type": "string", "pattern": "^[a-z]{2}$"}
-_RUN = {"type": "integer", "minimum": 1}
 _MAYBE_RUN = {"type": ["integer", "null"], "minimum": 1}
 
 
@@ -134,7 +141,7 @@ def services(
             {
                 # How long it may be is the grammar's business, which says so in words.
                 "utterance": {"type": "string"},
-                "language": _LANGUAGE,
+                "language": LANGUAGE,
                 "planner": {"enum": names()},
                 "talk": {"type": ["string", "null"], "maxLength": 100},
             },
@@ -148,7 +155,7 @@ def services(
                 runner.knowledge.lexicon(p.get("language", "en")), p.get("language", "en")
             ),
             "List what can be said here, by topic.",
-            {"language": _LANGUAGE},
+            {"language": LANGUAGE},
             observes=True,
             result=dict[str, list[str]],
         ),
@@ -159,7 +166,7 @@ def services(
             " if it began then.",
             {
                 "program": _PROGRAM,
-                "language": _LANGUAGE,
+                "language": LANGUAGE,
                 "continues": _MAYBE_RUN,
                 "at": {"type": "string", "maxLength": 40},
             },
@@ -171,7 +178,7 @@ def services(
             lambda p: left_of(p.get("run"), p.get("language", "en")),
             "Tell what is done and what is left of a run that was broken off, the last one if none"
             " is named; null if nothing is. It goes on as any program: approved, with `continues`.",
-            {"run": _RUN, "language": _LANGUAGE},
+            {"run": NUMBER, "language": LANGUAGE},
             observes=True,
         ),
         "program.reviewing": service_of_call(
@@ -191,8 +198,8 @@ def services(
             " it was lately, is refused unless somebody `insists`.",
             {
                 "program": _PROGRAM,
-                "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"},
-                "by": {"type": "string", "minLength": 1, "maxLength": 200},
+                "sha256": SHA256,
+                "by": NAME,
                 "utterance": _MAYBE,
                 "heard": _MAYBE,
                 "language": {"type": ["string", "null"], "maxLength": 5},
@@ -214,7 +221,7 @@ def services(
         ),
         "program.wait": Service(
             handler=lambda p, context: msgspec.to_builtins(waited(p, context.stop)),
-            params=an_object({"run": _RUN, "timeout": {"type": "number", "minimum": 0}}, "run"),
+            params=an_object({"run": NUMBER, "timeout": {"type": "number", "minimum": 0}}, "run"),
             doc="Wait until a run is over and tell how it ended.",
             result=schema_of(Status),
             observes=True,
@@ -225,7 +232,7 @@ def services(
             lambda p: answer(runner.log, runner.knowledge, p["run"], p.get("language", "en")),
             "Tell what came of a run, in sentences for whoever asked for it; each says whether the"
             " robot has spoken it there.",
-            {"run": _RUN, "language": _LANGUAGE},
+            {"run": NUMBER, "language": LANGUAGE},
             "run",
             observes=True,
             result=list[Sentence],
@@ -243,7 +250,7 @@ def services(
             ),
             "Tell a sentence of an error in another language; one that is not the robot's own"
             " software's as it is.",
-            {"sentence": {"type": "string", "maxLength": 2000}, "language": _LANGUAGE},
+            {"sentence": {"type": "string", "maxLength": 2000}, "language": LANGUAGE},
             "sentence language",
             right="know",
             result=str,

@@ -33,8 +33,7 @@ from nl2robot.schedule.standing import (
 from nl2robot.schedule.telling import happening
 from nl2robot.schedule.triggers import BadTrigger, possible
 from nl2robot.sentences import in_language
-from nl2robot.texts import texts_in
-from nl2robot.translate.outcome import Scheduled, Translation
+from nl2robot.translate.outcome import Translation
 from nl2robot.translate.talk import Talk
 
 Understand = Callable[[str, Talk], Translation]
@@ -94,7 +93,8 @@ def each_time(
     if not _is_errand(utterance, talk, understand):
         return Each(made)
     talk.doubtful = Doubtful(order, utterance)
-    return Each(_without(made, "clarify", question_in(language), choices_in(language)))
+    question = question_in(language)
+    return Each(Translation.without_program(utterance, "clarify", question, choices_in(language)))
 
 
 def _is_errand(utterance: str, talk: Talk, understand: Understand) -> bool:
@@ -124,49 +124,6 @@ def _made(
             trigger = possible(trigger, knowledge.capabilities.methods, places)
     except BadTrigger as error:
         message = in_language(str(error), language) or str(error)
-        return _without(what, "rejected", message, ())
+        return Translation.without_program(utterance, "rejected", message)
     words = happening(trigger, language)
-    planned = Scheduled(
-        trigger=trigger,
-        when=words,
-        sentence=order.sentence,
-        program=what.program,
-        plan=what.plan,
-        source=what.source,
-        confidence=what.confidence,
-        explanation=what.explanation,
-        unused=what.unused,
-        own=what.own,
-    )
-    waits = texts_in(language, "schedules")["not_yet"]
-    told = f"{words[:1].upper()}{words[1:]}: {what.explanation} {waits}"
-    answer = _without(what, "ok", told, ())
-    return msgspec.structs.replace(
-        answer,
-        utterance=utterance,
-        source="grammar",
-        confidence=what.confidence,
-        request=order,
-        schedule=planned,
-    )
-
-
-def _without(
-    made: Translation, status: str, message: str, suggestions: tuple[str, ...]
-) -> Translation:
-    """An answer without a program."""
-    return msgspec.structs.replace(
-        made,
-        status=status,
-        program=None,
-        plan=None,
-        source=None,
-        confidence=0.0,
-        explanation="",
-        message=message,
-        suggestions=list(suggestions),
-        schedule=None,
-        request=None,
-        unused=(),
-        own=(),
-    )
+    return what.at(words, order, utterance, language, trigger=trigger)

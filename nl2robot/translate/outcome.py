@@ -12,6 +12,7 @@ from grammar.requests import Request
 from nl2robot.plain import visible
 from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.triggers import Trigger
+from nl2robot.texts import texts_in
 from nl2robot.words import authorship
 
 Status = Literal["ok", "clarify", "rejected"]
@@ -91,6 +92,65 @@ class Translation(msgspec.Struct, frozen=True, kw_only=True):
     schedule: Scheduled | None = None
     """What is asked to be done at set times or at an event. There is no program to be run now then:
     this one is reviewed and approved for those times (`schedule.add` on the wire)."""
+
+    @classmethod
+    def without_program(
+        cls,
+        utterance: str,
+        status: Status,
+        message: str | None,
+        suggestions: Sequence[str] = (),
+        ms: float = 0.0,
+    ) -> Translation:
+        """A question back, or why there is none."""
+        return cls(
+            utterance=utterance,
+            status=status,
+            program=None,
+            plan=None,
+            source=None,
+            confidence=0.0,
+            explanation="",
+            message=message,
+            suggestions=list(suggestions),
+            ms=ms,
+        )
+
+    def at(
+        self,
+        when: str,
+        request: Request,
+        utterance: str,
+        language: str,
+        *,
+        rhythm: Rhythm | None = None,
+        trigger: Trigger | None = None,
+    ) -> Translation:
+        """This as what is to be done at set times, or at an event, told as that; `utterance` is all
+        that was said, `when` the times or the event in words."""
+        assert self.program is not None
+        planned = Scheduled(
+            rhythm=rhythm,
+            trigger=trigger,
+            when=when,
+            sentence=request.sentence,
+            program=self.program,
+            plan=self.plan,
+            source=self.source,
+            confidence=self.confidence,
+            explanation=self.explanation,
+            unused=self.unused,
+            own=self.own,
+        )
+        waits = texts_in(language, "schedules")["not_yet"]
+        told = f"{when[:1].upper()}{when[1:]}: {self.explanation} {waits}"
+        return msgspec.structs.replace(
+            Translation.without_program(utterance, "ok", told),
+            source="grammar",
+            confidence=self.confidence,
+            request=request,
+            schedule=planned,
+        )
 
     def to_json(self) -> str:
         return msgspec.json.encode(self).decode()

@@ -44,11 +44,10 @@ from nl2robot.schedule.rhythm import BadRhythm, local
 from nl2robot.schedule.wishes import first_time
 from nl2robot.schedule.words import in_words
 from nl2robot.sentences import in_language
-from nl2robot.texts import texts_in
 from nl2robot.translate.courtesies import courtesy
 from nl2robot.translate.each_time import each_time, ordered
 from nl2robot.translate.other_language import language_of
-from nl2robot.translate.outcome import Scheduled, Status, Translation
+from nl2robot.translate.outcome import Status, Translation
 from nl2robot.translate.planners import AUTO, available, planner
 from nl2robot.translate.talk import Talk
 from nl2robot.translate.teaching import Reply, reply, settle
@@ -205,22 +204,8 @@ def _at_set_times(
         talk.timeless = found
         return _without_program(utterance, "clarify", found.question, found.sentences, started)
     words = in_words(found, language, now)
-    planned = Scheduled(
-        rhythm=found,
-        when=words,
-        sentence=request.sentence,
-        program=what.program,
-        plan=what.plan,
-        source=what.source,
-        confidence=what.confidence,
-        explanation=what.explanation,
-        unused=what.unused,
-        own=what.own,
-    )
-    waits = texts_in(language, "schedules")["not_yet"]
-    told = Reply("ok", f"{words[:1].upper()}{words[1:]}: {what.explanation} {waits}")
-    answer = _answer(utterance, told, request, started)
-    return msgspec.structs.replace(answer, schedule=planned, confidence=what.confidence)
+    planned = what.at(words, request, utterance, language, rhythm=found)
+    return msgspec.structs.replace(planned, ms=_milliseconds(started))
 
 
 def _as_an_appointment(
@@ -423,18 +408,8 @@ def _remembered(utterance: str, thing: str, told: str, started: float) -> Transl
 def _without_program(
     utterance: str, status: Status, message: str | None, suggestions: Sequence[str], started: float
 ) -> Translation:
-    return Translation(
-        utterance=utterance,
-        status=status,
-        program=None,
-        plan=None,
-        source=None,
-        confidence=0.0,
-        explanation="",
-        message=message,
-        suggestions=list(suggestions),
-        ms=_milliseconds(started),
-    )
+    ms = _milliseconds(started)
+    return Translation.without_program(utterance, status, message, suggestions, ms)
 
 
 def _milliseconds(started: float) -> float:
@@ -547,6 +522,6 @@ def _answer(utterance: str, answer: Reply, request: Request | None, started: flo
         explanation="",
         message=answer.message,
         suggestions=answer.suggestions,
-        ms=round((time.perf_counter() - started) * 1000, 3),
+        ms=_milliseconds(started),
         request=request,
     )

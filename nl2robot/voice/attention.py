@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from nl2robot.speech.audio import Converter
-from nl2robot.wire import service_of_call
+from nl2robot.wire import LANGUAGE, service_of_call
 from robot_api.errors import InvalidCall, NotPossible
 from robot_api.server import Context, Service
 
@@ -117,7 +117,7 @@ class Attention:
                 "Listen for the hot word at a client's microphone; returns a number.",
                 {
                     "rate": {"type": "integer"},
-                    "language": {"type": "string", "pattern": "^[a-z]{2}$"},
+                    "language": LANGUAGE,
                 },
                 "rate",
             ),

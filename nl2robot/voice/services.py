@@ -38,7 +38,7 @@ from nl2robot.speech.hear.listening import (
 from nl2robot.translate.outcome import Translation
 from nl2robot.translate.talk import Talk
 from nl2robot.translate.thinking import Thought, published
-from nl2robot.wire import service, service_of_call
+from nl2robot.wire import LANGUAGE, service, service_of_call
 from nl2robot.work import Do, here
 from robot_api.capabilities.sound import SILENT
 from robot_api.driver import StopFlag
@@ -344,7 +344,7 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
             {
                 "rate": {"type": "integer"},
                 "channels": {"type": "integer"},
-                "language": {"type": "string", "pattern": "^[a-z]{2}$"},
+                "language": LANGUAGE,
                 "talk": {"type": ["string", "null"], "maxLength": 100},
                 "interrupts": {"type": "boolean"},
                 "held": {"type": "boolean"},
@@ -354,7 +354,7 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
         "voice.ready": service(
             lambda p: microphones.get_ready(p.get("language", "en")),
             "Load what hears a language: somebody is about to speak.",
-            {"language": {"type": "string", "pattern": "^[a-z]{2}$"}},
+            {"language": LANGUAGE},
         ),
         "voice.push": service(
             lambda p: microphones.push(p["microphone"], p["sound"]),

@@ -8,7 +8,7 @@ alike (`static/desk/`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from nl2robot.console.desk.desk import Desk
 from nl2robot.console.desk.dialogues import Dialogues
@@ -20,10 +20,8 @@ from nl2robot.console.visitor import texts
 from nl2robot.paths import data_folder
 from nl2robot.station.local_clock import moment_in
 from nl2robot.station.part import Backstage, Part
-from nl2robot.wire import service
+from nl2robot.wire import LANGUAGE, service
 from sandbox.limits import MAX_PROGRAM
-
-_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
 
 
 def part(backstage: Backstage) -> Part:
@@ -66,7 +64,7 @@ def part(backstage: Backstage) -> Part:
                 " each line in plain words (line, depth, text). With `at`, as if it began then.",
                 {
                     "program": {"type": "string", "maxLength": MAX_PROGRAM},
-                    "language": _LANGUAGE,
+                    "language": LANGUAGE,
                     "at": {"type": "string", "maxLength": 40},
                 },
                 "program",
@@ -74,7 +72,7 @@ def part(backstage: Backstage) -> Part:
             "desk.run": service(
                 lambda p: run_view(backstage, p.get("language", "en")),
                 "Tell how the present or last run stands, with its program and calls.",
-                {"language": _LANGUAGE},
+                {"language": LANGUAGE},
                 observes=True,
             ),
         },

@@ -34,7 +34,7 @@ from nl2robot.translate import routine_files
 from nl2robot.translate.routine_files import Choice
 from nl2robot.translate.routines import Routine, Routines, spelled
 from nl2robot.translate.teaching import Teacher, tidied
-from nl2robot.wire import an_object, service
+from nl2robot.wire import LANGUAGE, an_object, service
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Service
 from sandbox.limits import MAX_PROGRAM
@@ -46,7 +46,6 @@ _HEAD: Final = (
     '<script type="module" src="/static/routines/routines.js"></script>'
 )
 _NAME: Final = {"type": "string", "maxLength": 200}
-_LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
 _READER: Final = {"enum": list(LANGUAGES)}
 _BY: Final = {"type": "string", "maxLength": LONGEST_NAME}
 _BODY: Final = {
@@ -148,8 +147,8 @@ class Shelf:
     # --- the wire
 
     def services(self) -> dict[str, Service]:
-        one = {"name": _NAME, "language": _LANGUAGE, "reader": _READER}
-        which = an_object({"name": _NAME, "language": _LANGUAGE}, "name language")
+        one = {"name": _NAME, "language": LANGUAGE, "reader": _READER}
+        which = an_object({"name": _NAME, "language": LANGUAGE}, "name language")
         number = {"type": "integer", "minimum": 0}
         choice = an_object(
             {"number": number, "name": _NAME, "replace": {"type": "boolean"}}, "number name"
