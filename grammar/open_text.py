@@ -186,7 +186,9 @@ class OpenText:
             token = self.tokens[position]
             if token.norm in self.words.duties:
                 return []
-            if token.kind in ("mark", "quote") or self._begins_command(position):
+            # Where it begins, its rule has said that no order does.
+            other = position > at and self._begins_command(position)
+            if token.kind in ("mark", "quote") or other:
                 break
             matches.append((position + 1, FREE_WORD * (position + 1 - at), None))
         return matches

@@ -108,6 +108,10 @@ def test_the_times_are_when_and_no_part_of_what_is_said(
         ),
         ("de", "erinnere Alice daran zu trinken", "Bitte trinken Sie.", "Haben Sie das gemacht?"),
         (
+            *("de", "erinnere Bob daran, seine Tasche mitzunehmen"),
+            *("Bitte nehmen Sie Ihre Tasche mit.", "Haben Sie das gemacht?"),
+        ),
+        (
             *("de", "erinnere Alice daran, dass die Physiotherapie um vier kommt"),
             *("Die Physiotherapie kommt um vier.", "Haben Sie mich verstanden?"),
         ),
