@@ -398,11 +398,17 @@ class Slots:
     def _unknown(self, at: int) -> list[Match]:
         """The name of something nobody knows, so that it can be said which."""
         matches: list[Match] = []
+        number_ends = at
         for position in range(at, min(at + LONGEST_UNKNOWN, len(self.tokens))):
             token = self.tokens[position]
             if token.norm == self._possessive and matches:
                 continue  # "Mrs Miller's room"
-            if token.kind == "mark" or token.norm in self.language.closed:
+            if matches:  # "chambre cent un", "room two hundred and five"
+                said = (end for end, cost, _ in self._number(position) if not cost)
+                number_ends = max(number_ends, *said, position)
+            if position >= number_ends and (
+                token.kind == "mark" or token.norm in self.language.closed
+            ):
                 break
             matches.append((position + 1, UNKNOWN_NAME + FREE_WORD * (position + 1 - at), None))
         return matches

@@ -406,6 +406,15 @@ def test_a_number_in_one_is_known(language: str, words: str, number: str) -> Non
     assert found == f'robot.goto("room {number}")\n'
 
 
+@pytest.mark.parametrize(
+    ("language", "name"),
+    [("fr", "chambre trois cent un"), ("fr", "salle vingt et un"), ("en", "gym four hundred ten")],
+)
+def test_a_room_that_nobody_knows_is_named_with_its_whole_number(language: str, name: str) -> None:
+    order = {"en": "go to the {}", "fr": "va à la {}"}[language].format(name)
+    assert name in translate(order, rooms(), language, RULES).message
+
+
 @pytest.mark.parametrize("word", ["corridor", "hallway", "passage"])
 def test_a_place_is_known_by_what_people_also_call_it(word: str) -> None:
     found = translate(f"go to the {word}", rooms(), "en", RULES).program
