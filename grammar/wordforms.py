@@ -81,6 +81,8 @@ def _plural(word: str, language: Language) -> str:
     if one is not None:
         many = str(table[one])
         return head + (many.lower() if head else many)
+    if _singular(word, language) != word:
+        return word  # "gloves" are several already
     for one_ending, many_ending in language.plurals.get("endings", ()):
         if word.lower().endswith(one_ending):
             return word[: len(word) - len(one_ending)] + str(many_ending)

@@ -16,7 +16,9 @@ from grammar.program import write_program
 from grammar.program_parser import parse_program, read_program
 from grammar.speech import gaps
 from grammar.traversal import walk
+from grammar.understand import understand
 from robot_api.methods import METHODS
+from tests.grammar.hospitals import hospital
 from tests.grammar.random_plans import plans
 
 MODEST = settings(max_examples=80, deadline=None, suppress_health_check=list(HealthCheck))
@@ -85,6 +87,13 @@ def test_nouns_have_their_articles() -> None:
     assert explained(call("say", text=people)) == (
         "I will say “I see [the number of people I see]”."
     )
+
+
+@pytest.mark.parametrize("things", ["scissors", "gloves", "reading glasses"])
+def test_of_what_there_is_never_one_it_is_told_so(things: str) -> None:
+    assert f"some {things}" in explained(call("find", thing=text(things)))
+    told = understand(f"count the {things}", hospital("en"), "en").plan
+    assert told is not None and f"Number of {things}:" in write_program(told)
 
 
 def test_what_was_heard_is_called_the_answer_to_its_question_when_there_are_two() -> None:
