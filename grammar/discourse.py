@@ -86,6 +86,8 @@ class Discourse:
     variables: set[str] = field(default_factory=set)
     background: list[str] = field(default_factory=list)
     """What was said besides, in its words, and asks for nothing."""
+    whereabouts: list[tuple[str, Value]] = field(default_factory=list)
+    """What of it says no more than where somebody or something is, and that place."""
     assumptions: list[str] = field(default_factory=list)
     """What was assumed without being said; each lowers the confidence."""
 

@@ -14,6 +14,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Final
 
+import msgspec
+
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
@@ -28,7 +30,7 @@ from grammar.memory import Command, Deliveries, People, Scene
 from grammar.names import Names
 from grammar.naming import joined_up, naming, place_called
 from grammar.number_options import with_numbers
-from grammar.plan import Plan, Text, Value
+from grammar.plan import Ask, Call, Plan, Text, Value
 from grammar.planning.by_the_clock import by_the_clock
 from grammar.plausible import implausible
 from grammar.prepared import prepared
@@ -172,6 +174,7 @@ class SentenceReader:
         if senseless is not None:
             message = self.language.phrase(senseless.value)
             return rejected(self.text, message, self.context)
+        plan = _without_heeded(plan, discourse)
         return Understanding(
             self.text,
             "ok",
@@ -482,3 +485,15 @@ def _source(discourse: Discourse) -> Value | None:
         discourse.deliveries.source,
     )
     return next((place for place in places if isinstance(place, Text)), None)
+
+
+def _without_heeded(plan: Plan, discourse: Discourse) -> Plan:
+    """The plan without those remarks that it heeds: it looks where somebody was said to be."""
+    known = {
+        node.arguments.get("place")
+        for node in nodes(plan.steps)
+        if isinstance(node, Call | Ask) and node.method in ("find", "goto")
+    }
+    heeded = {said for said, place in discourse.whereabouts if place in known}
+    background = tuple(each for each in plan.background if each not in heeded)
+    return msgspec.structs.replace(plan, background=background)

@@ -157,6 +157,8 @@ def remark_where(d: Discourse, node: Node) -> Steps:
             d.scene.thing, d.scene.thing_last = all_there_are(there), True
             told_where(d, d.scene.thing)
             known_to_be(d, what.value, place)
+    if place is not None:
+        d.whereabouts.append((_said(d, node), place))
     return aside(d, node)
 
 
