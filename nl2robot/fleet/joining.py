@@ -124,6 +124,7 @@ class Fleet:
             self.hub.sealer.session,
             lambda raw: self._heard.put(lambda now: self.hub.hear(raw, now)),
             lambda robot, session: self._heard.put(lambda now: self.hub.gone(robot, session)),
+            self._notify,
         )
         self._performer = Performer(self.book, self.hub.sealer.session, self, time.monotonic)
         self._threads = [
@@ -396,8 +397,9 @@ class Fleet:
 
     def _notify(self, sentence: str) -> None:
         """A notice on every page of the console."""
-        assert self._stage is not None
         _log.warning("%s", sentence)
+        if self._stage is None:
+            return
         said = {code: in_language(sentence, code) or sentence for code in languages()}
         data = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
         self._stage.publish("notice", {**data, "occurrence": None, "parts": {}, "told": said})

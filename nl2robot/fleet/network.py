@@ -12,11 +12,12 @@ somehow; a configuration of one's own may say otherwise.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from nl2robot.errors import UserError
 from nl2robot.fleet.address import FleetAddress
+from nl2robot.fleet.encryption import Inspection, inspection
 from robot_api.errors import cause
 
 if TYPE_CHECKING:
@@ -25,6 +26,20 @@ if TYPE_CHECKING:
 ROOT: Final = "nl2robot"
 RETRY: Final = {"period_init_ms": 500, "period_max_ms": 2000, "period_increase_factor": 2}
 """How often somebody who is away is called."""
+FINDING: Final = ("scouting/multicast/enabled", "scouting/gossip/enabled")
+CALLING: Final = ("scouting/multicast/autoconnect", "scouting/gossip/autoconnect")
+CALLED: Final = {each: ["router", "peer"] for each in ("router", "peer", "client")}
+"""Whom one calls that was found; by itself, Zenoh's routers call nobody."""
+BEFORE: Final[Mapping[str, Any]] = {
+    "mode": "router",
+    **dict.fromkeys(CALLING, CALLED),
+    **dict.fromkeys(FINDING, False),  # nobody is connected to whom nobody has named
+    "connect/timeout_ms": -1,  # it is tried for ever, meanwhile
+    "connect/exit_on_failure": False,
+    "connect/retry": RETRY,
+    "listen/endpoints": [],
+}
+"""What holds unless Zenoh's configuration file says otherwise."""
 
 
 class Network:
@@ -41,14 +56,17 @@ class Network:
         session: str,
         heard: Callable[[bytes], None],
         gone: Callable[[str, str], None],
+        warn: Callable[[str], None] = lambda sentence: None,
     ) -> None:
-        """Nothing happens before `open`."""
+        """Nothing happens before `open`. `warn` is told what is wrong with certificates."""
         self._address = address
         self._fleet = f"{ROOT}/{fleet}"
         self._robot = robot
         self._alive = f"{self._fleet}/alive/{robot}/{session}"
         self._heard = heard
         self._gone = gone
+        self._warn = warn
+        self._inspection: Inspection | None = None
         self._session: Session | None = None
         self._declared: list[Any] = []
 
@@ -73,7 +91,8 @@ class Network:
                 self._gone(robot, session)
 
         try:
-            session = self._session = zenoh.open(self._config(zenoh.Config))
+            config = self._config(zenoh.Config)
+            session = self._session = zenoh.open(config)
             self._declared = [
                 session.declare_subscriber(f"{self._fleet}/all/*", sample),
                 session.declare_subscriber(f"{self._fleet}/to/{self._robot}", sample),
@@ -86,8 +105,12 @@ class Network:
                 f"The fleet cannot be joined ({_first(error)}). Check --fleet, --fleet-listen and"
                 " --fleet-config."
             ) from error
+        self._inspection = inspection(config, self._warn)
+        self._inspection.begin()
 
     def close(self) -> None:
+        if self._inspection is not None:
+            self._inspection.end()
         session, self._session = self._session, None
         self._declared = []
         if session is not None:
@@ -113,7 +136,7 @@ class Network:
             return
 
     def _config(self, made: type[Config]) -> Config:
-        address = self._address
+        address, config = self._address, made()
         if address.config is not None:
             try:
                 config = made.from_file(address.config)
@@ -122,16 +145,12 @@ class Network:
                     f"The configuration of Zenoh in {address.config} cannot be used"
                     f" ({_first(error)}). Check the file."
                 ) from error
-        else:
-            config = made()
-            config.insert_json5("mode", '"router"')
-            config.insert_json5("scouting/multicast/enabled", json.dumps(address.finds))
-            # Nobody is connected to whom nobody has named.
-            config.insert_json5("scouting/gossip/enabled", json.dumps(address.finds))
-            config.insert_json5("connect/timeout_ms", "-1")  # it is tried for ever, meanwhile
-            config.insert_json5("connect/exit_on_failure", "false")
-            config.insert_json5("connect/retry", json.dumps(RETRY))
-            config.insert_json5("listen/endpoints", "[]")
+        plain = made()
+        finds = {each: address.finds for each in FINDING if address.finds}
+        for key, ours in (BEFORE | finds).items():
+            # Where the file is silent, Zenoh would listen and look for others by itself.
+            if config.get_json(key) == plain.get_json(key) or key in finds:
+                config.insert_json5(key, json.dumps(ours))
         for key, endpoints in (("listen", address.listens), ("connect", address.connects)):
             if endpoints:
                 config.insert_json5(f"{key}/endpoints", json.dumps(endpoints))

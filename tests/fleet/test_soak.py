@@ -217,7 +217,7 @@ class Day:
 
 @pytest.fixture
 def day(tmp_path: Path, soak: bool) -> Iterator[Day]:
-    seed = int(os.environ.get("NL2ROBOT_SEED", random.randrange(10**6) if soak else 7))
+    seed = int(os.environ.get("FLEET_SEED", random.randrange(10**6) if soak else 7))
     print(f"seed {seed}")
     names = NAMES if soak else NAMES[:3]
     hubs = (names[0], names[len(names) // 2])

@@ -155,6 +155,7 @@ def run(options: argparse.Namespace) -> int:
     with ExitStack() as stack:
         stack.enter_context(kept_for(log, options.log_days * DAY))
         stack.enter_context(_told_here("nl2robot.building"))
+        stack.enter_context(_told_here("nl2robot.fleet"))
         entrance = stack.enter_context(_entrance(options))
         sound = stack.enter_context(sound_of(options, world, "en"))
         if robot.simulated:
