@@ -77,13 +77,16 @@ class Hub:
         where: Callable[[str], tuple[float, float] | None],
         send: Send,
         deeds: Deeds,
+        sign: Callable[[str, Order], Order] = lambda robot, order: order,
         session: str | None = None,
     ) -> None:
+        """`sign` puts this station's signature under an order for the robot of that id."""
         self.me = book.robot
         self.about = about
         self._standing = standing
         self._send = send
         self._deeds = deeds
+        self._sign = sign
         self.sealer = Sealer(key, self.me, session)
         self._opener = Opener(key, self.me)
         self.roll = Roll()
@@ -173,7 +176,7 @@ class Hub:
         self._send(to, raw, urgent=kind in ("stop", "stopped"))
 
     def _say_order(self, robot: str, order: Order) -> None:
-        self.say("order", order, robot)
+        self.say("order", self._sign(robot, order), robot)
 
     def _say_state(self, now: float) -> None:
         since = now - self._said_at

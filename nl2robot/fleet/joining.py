@@ -24,6 +24,7 @@ from nl2robot.fleet.key import fingerprint, fleet_key
 from nl2robot.fleet.messages import About, Answer, Order, Standing, Stop, Stopped, ZoneEntry
 from nl2robot.fleet.network import Network
 from nl2robot.fleet.performing import Performer
+from nl2robot.fleet.trust import Station
 from nl2robot.review.review import digest
 from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING
@@ -88,7 +89,9 @@ class Fleet:
         self._connect = connect
         key = address.key or fleet_key()
         log = runner.log.path
-        self.book = FleetBook(Path(log).with_name(FILE) if str(log) != ":memory:" else ":memory:")
+        folder = Path(log).parent if str(log) != ":memory:" else None
+        self.book = FleetBook(folder / FILE if folder is not None else ":memory:")
+        self._station = Station(folder)
         self._lock = threading.RLock()
         self._heard: queue.SimpleQueue[Callable[[float], None] | None] = queue.SimpleQueue()
         self._orders: queue.SimpleQueue[tuple[str, Order] | None] = queue.SimpleQueue()
@@ -116,6 +119,7 @@ class Fleet:
                 zoned=self._zones.put,
                 changed=lambda errand: self._changed.notify_all(),
             ),
+            sign=lambda robot, order: self._station.signed(self.book.robot, robot, order),
         )
         self.network = Network(
             address,
@@ -262,6 +266,13 @@ class Fleet:
         ]
 
     # --- what the robot does for its fleet (`nl2robot.fleet.performing.Means`)
+
+    def doubts(self, sender: str, order: Order) -> str | None:
+        me = self.book.robot
+        doubt = self._station.doubts(sender, me, order) if sender != me else None
+        if doubt is not None:
+            _log.warning("The fleet's order %s was not taken. %s", order.offer, doubt)
+        return doubt
 
     def consider(self, offer: Offer) -> str | None:
         waits = waits_for(self._runner.present.state, time.time(), self._battery)

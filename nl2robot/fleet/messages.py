@@ -68,6 +68,10 @@ class Order(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Who approved it, and where, for the robot's log."""
     reviewed: str = ""
     """What their review found, as `nl2robot.schedule.findings` keeps it."""
+    station: str = ""
+    signature: bytes = b""
+    """Of an offer and a go: whose approval it is, and that station's word for it
+    (`nl2robot.fleet.trust`)."""
 
 
 Stand = Literal["accepted", "refused", "expired", "withdrawn", "begun", "over"]

@@ -31,6 +31,9 @@ BROKEN_OFF: Final = "broken_off"
 class Means(Protocol):
     """What a robot does with an offer."""
 
+    def doubts(self, sender: str, order: Order) -> str | None:
+        """Why nobody answers for this order, if nobody does (`nl2robot.fleet.trust`)."""
+
     def consider(self, offer: Offer) -> str | None:
         """Review it here, now; why it is not done, if it is not."""
 
@@ -66,6 +69,11 @@ class Performer:
         kept = self._book.offer(order.offer)
         if kept is not None and kept.sender != sender:
             return Answer(offer=order.offer, stand="refused")  # it is nobody else's to begin
+        doubt = self._means.doubts(sender, order)
+        if doubt is not None:
+            if kept is None:  # not noted: who makes up offers cannot use up those of others
+                return Answer(offer=order.offer, stand="refused", why=doubt)
+            order = msgspec.structs.replace(order, what="ask")
         if order.what == "offer":
             return self._told(kept or self._offered(sender, order))
         if kept is None:  # an offer that never came here, or that comes later than its end

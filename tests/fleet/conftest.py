@@ -4,6 +4,7 @@ hands it on, loses it, or hands it on twice."""
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from msgspec.structs import replace
@@ -12,6 +13,7 @@ from nl2robot.fleet.book import Errand, FleetBook, Offer
 from nl2robot.fleet.hub import Deeds, Hub
 from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped
 from nl2robot.fleet.performing import Performer
+from nl2robot.fleet.trust import Station
 from nl2robot.review.review import digest
 from nl2robot.schedule.findings import Findings, encoded
 
@@ -38,7 +40,14 @@ class Killed(BaseException):
 class FakeRobot:
     """A robot of the fleet: what it keeps outlives its process."""
 
-    def __init__(self, net: FakeNetwork, name: str, x: float = 0.0, **about: Any) -> None:
+    def __init__(
+        self,
+        net: FakeNetwork,
+        name: str,
+        x: float = 0.0,
+        folder: Path | None = None,
+        **about: Any,
+    ) -> None:
         self.net, self.name, self.x = net, name, x
         self.book = FleetBook(":memory:")
         self.id = self.book.robot
@@ -58,6 +67,7 @@ class FakeRobot:
         self.stood: list[str] = []
         self.dies_at: str | None = None
         """ "note" or "run": it is killed as soon as that was done for something that begins."""
+        self.station = Station(folder)
         self.starts()
 
     def starts(self) -> None:
@@ -71,6 +81,7 @@ class FakeRobot:
             where=lambda place: (10.0, 0.0) if place == "pharmacy" else None,
             send=lambda to, raw, *, urgent: self.net.sent(self, to, raw),
             deeds=Deeds(ordered=self._ordered, stopped=self._stopped),
+            sign=lambda robot, order: self.station.signed(self.id, robot, order),
         )
         self.performer = Performer(
             self.book, self.hub.sealer.session, self, lambda: self.net.now + self.drift
@@ -92,6 +103,9 @@ class FakeRobot:
         self.hub.say("stopped", Stopped(stop.stop, True), sender)
 
     # what it does with an offer (`nl2robot.fleet.performing.Means`)
+
+    def doubts(self, sender: str, order: Order) -> str | None:
+        return self.station.doubts(sender, self.id, order) if sender != self.id else None
 
     def consider(self, offer: Offer) -> str | None:
         return self.refuses

@@ -104,6 +104,7 @@ def test_a_fleet_of_one_lists_runs_and_stops(home: Path, capsys: Said) -> None:
         said = capsys.readouterr().out
         assert ran == ExitStatus.OK, said
         assert "Ada does it." in said and "Done" in said
+        assert "tried on Ada, where it stands" in " ".join(said.split())
         assert cli.main(["fleet", "--json", *here]) == ExitStatus.OK
         found = json.loads(capsys.readouterr().out)
         assert [each["name"] for each in found["members"]] == ["Ada"]

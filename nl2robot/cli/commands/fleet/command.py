@@ -17,14 +17,17 @@ from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.fleet.book import Errand
 from nl2robot.fleet.key import fingerprint, fleet_key, make_key
+from nl2robot.fleet.trust import Station, distrust, trusted
+from nl2robot.fleet.trust import trust as trust_station
 from nl2robot.fleet.wire import WAITS, Told
+from nl2robot.paths import data_folder
 from nl2robot.plain import visible
 from nl2robot.station.clients import client_of
 from robot_api.client import Robot
 from robot_api.errors import InvalidCall
 from robot_api.server import DEFAULT_PORT
 
-ACTIONS: Final = ("list", "run", "stop", "key")
+ACTIONS: Final = ("list", "run", "stop", "key", "trust", "distrust")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -34,9 +37,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="?",
         type=words,
         metavar="WORDS|ROBOT",
-        help="run: what one of them should do; stop: the only one to be stopped",
+        help="run: what one of them should do; stop: the only one to be stopped; trust, distrust:"
+        " the name of a station",
     )
     parser.add_argument("--program", metavar="FILE", help="run: this program instead of words")
+    parser.add_argument("--station", metavar="KEY", help="trust: the key of that station")
     parser.add_argument("--on", metavar="ROBOT", help="run: by this one, not by the best")
     parser.add_argument("--json", action="store_true", help="list, stop: as JSON")
     here = f"ws://127.0.0.1:{DEFAULT_PORT}"
@@ -56,6 +61,8 @@ def run(options: argparse.Namespace) -> int:
     terminal = Terminal(language=options.lang)
     if options.action == "key":
         return _key(terminal)
+    if options.action in ("trust", "distrust"):
+        return _trust(options, terminal)
     trust(options)
     with client_of(options.robot, options.token) as robot:
         _check_fleet(robot, options.robot)
@@ -80,6 +87,23 @@ def _key(terminal: Terminal) -> int:
     file = make_key()
     told = terminal.words["fleet_key"].format(file=file, print=fingerprint(fleet_key()))
     terminal.console.print(told, soft_wrap=True, markup=False)
+    return ExitStatus.OK
+
+
+def _trust(options: argparse.Namespace, terminal: Terminal) -> int:
+    folder, words = data_folder(), terminal.words
+    name, key = options.words, options.station
+    if options.action == "distrust":
+        distrust(folder, name or "")
+    elif name or key:
+        trust_station(folder, name or "", key or "")
+    show = terminal.console.print
+    show(words["fleet_station"].format(key=Station(folder).public), soft_wrap=True, markup=False)
+    known = trusted(folder)
+    told = words["fleet_trusts_all" if known is None else "fleet_trusts"]
+    show(told, soft_wrap=True, markup=False)
+    for key, name in (known or {}).items():
+        show(visible(f"{key} {name}"), soft_wrap=True, markup=False)
     return ExitStatus.OK
 
 
@@ -112,6 +136,10 @@ def _list(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> None
                 visible(errand.by),
             )
         terminal.console.print(table, markup=False)
+
+
+def _members(robot: Robot) -> list[dict[str, Any]]:
+    return list(robot.request("fleet.list", {})["members"])
 
 
 def _called(member: Mapping[str, Any]) -> str:
@@ -152,6 +180,9 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
         raise UserError("Say what one of the robots should do, or give a --program.")
     review = operator.check(program, options.lang)
     terminal.show_review(review)
+    here = next(each for each in _members(operator.robot) if each["here"])
+    if options.on not in (here["name"], here["id"]):
+        show(visible(words["fleet_rehearsed"].format(robot=here["name"])), markup=False)
     decision, *_ = terminal.decide(review)
     if decision != "approve":
         show(words["rejected"], markup=False)

@@ -22,11 +22,11 @@ root.append(
   element('section', {class: 'card', 'aria-labelledby': 'errands-title'}, element('h2', {id: 'errands-title'}, words.errands), given),
 );
 const map = new FleetMap(drawn, words);
-if (role === 'operator') mountSending(root, {wire, words, language, who: pageData.who});
-
 let members = [];
 let errands = [];
 let at = 0; // when that was told, by the clock of this browser
+const here = () => members.find((member) => member.here)?.name ?? '';
+if (role === 'operator') mountSending(root, {wire, words, language, who: pageData.who, here});
 
 /** Seconds since a robot was heard of; the server's count goes on here. */
 const age = (member) => (member.here && wire.connected ? 0 : member.heard + (performance.now() - at) / 1000);

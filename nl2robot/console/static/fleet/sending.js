@@ -1,9 +1,9 @@
 /** A sentence for the fleet: it becomes a program, which somebody looks at and approves, for the
  * robot that does it best. */
 
-import {element} from '/static/page.js';
+import {element, filled} from '/static/page.js';
 
-export function mountSending(root, {wire, words, language, who}) {
+export function mountSending(root, {wire, words, language, who, here}) {
   const line = element('input', {class: 'field', id: 'fleet-sentence', maxlength: 500, placeholder: words.send_hint, 'aria-labelledby': 'send-title'});
   const form = element('form', {class: 'row'}, line, element('button', {class: 'button'}, words.look));
   const shown = element('div', {class: 'fleet-review', role: 'status'});
@@ -28,6 +28,7 @@ export function mountSending(root, {wire, words, language, who}) {
     reject.addEventListener('click', () => shown.replaceChildren());
     shown.replaceChildren(
       element('p', {class: found.good ? 'outlook' : 'outlook bad'}, found.outcome),
+      element('p', {class: 'muted', id: 'fleet-rehearsed'}, filled(words.rehearsed, {robot: here()})),
       element('ol', {class: 'reading'}, ...found.reading.map(([, depth, text]) => element('li', {style: `margin-left: ${1.2 * depth}rem`}, text))),
       element('pre', {}, program),
       element('ul', {class: 'risks'}, ...found.marks.map(({text}) => element('li', {class: 'warn'}, text))),
