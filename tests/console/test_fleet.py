@@ -73,6 +73,7 @@ def test_both_are_on_one_map_and_the_nearest_does_what_was_approved(
     page.locator("#fleet-sentence").fill("go to the pharmacy and say good morning")
     page.get_by_role("button", name="Look at it").click()
     expect(page.locator(".fleet-review pre")).to_contain_text('robot.goto("pharmacy")')
+    expect(page.locator("#fleet-rehearsed")).to_contain_text("Tried on Ada, where it stands.")
     picture(page, "fleet")
     page.get_by_role("button", name="Approve, for the best robot").click()
     expect(page.locator(".errand").first).to_contain_text("Done by Ben")

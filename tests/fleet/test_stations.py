@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from nl2robot.fleet.trust import Station, trust
 from robot_api.errors import InvalidCall
 from tests.fleet.wards import NAMES, Ward, known
 
@@ -89,3 +90,23 @@ def test_all_stand_within_a_second(ward: Ward) -> None:
     told = ward.ask("Ben", "stop")
     assert [each["confirmed"] for each in told] == [True] * 3
     assert ward.over("Ben", errand)["state"] == "stopped"
+
+
+def test_a_robot_takes_only_what_a_station_approved_that_it_trusts(
+    ward: Ward, tmp_path: Path
+) -> None:
+    for name in NAMES[:3]:
+        ward.starts(name)
+    trust(tmp_path / "Ben", "Ward 3", Station(tmp_path / "Ada").public)
+    for name in ("Ada", "Cleo"):
+        ward.until(name, lambda found: known(found) == set(NAMES[:3]))
+    program = 'robot.say("Hello.")\n'
+    refused = ward.run("Cleo", program, robot="Ben")
+    ward.until("Cleo", lambda found: "Ben" in found["errands"][0]["refused"])
+    [errand] = ward.ask("Cleo", "list")["errands"]
+    assert "It does not trust the station" in errand["refused"]["Ben"]
+    assert ward.ask("Cleo", "call_off", errand=refused)["state"] == "called_off"
+    taken = ward.run("Ada", program, robot="Ben")
+    assert ward.over("Ada", taken)["state"] == "done"
+    [(where, run)] = ward.runs()
+    assert (where, run.approved_by) == ("Ben", "Nurse Kim (fleet, from Ada)")
