@@ -147,7 +147,7 @@ class Network:
                 ) from error
         plain = made()
         finds = {each: address.finds for each in FINDING if address.finds}
-        for key, ours in (BEFORE | finds).items():
+        for key, ours in {**BEFORE, **finds}.items():
             # Where the file is silent, Zenoh would listen and look for others by itself.
             if config.get_json(key) == plain.get_json(key) or key in finds:
                 config.insert_json5(key, json.dumps(ours))

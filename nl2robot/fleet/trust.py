@@ -127,6 +127,7 @@ def _written(folder: Path, known: Mapping[str, str]) -> None:
     file = folder / TRUSTED
     new = file.with_name(f"{TRUSTED}.new")
     try:
+        made(folder)
         new.write_text("".join(f"{k} {n}\n" for k, n in known.items()), encoding="utf-8")
         new.replace(file)
     except OSError as error:

@@ -11,9 +11,10 @@ from __future__ import annotations
 import json
 import os
 import random
+import threading
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,10 @@ import pytest
 import zenoh
 
 from nl2robot.fleet.messages import Order, packed
+from nl2robot.fleet.network import BEFORE
 from nl2robot.fleet.roll import UNKNOWN_AFTER
 from nl2robot.fleet.sealing import Sealer
+from nl2robot.fleet.trust import Station, trust
 from nl2robot.review.review import digest
 from robot_api.errors import RobotError
 from tests.fleet.wards import NAMES, OPEN, Ward
@@ -33,21 +36,25 @@ UNAPPROVED = 'robot.say("Nobody approved this.")\n'
 class Outsider:
     """Somebody in the network without the key: plays all again, changed, too, and makes it up."""
 
-    def __init__(self, port: int, chance: random.Random) -> None:
+    def __init__(self, ports: Iterable[int], chance: random.Random) -> None:
         self._chance = chance
         self.heard: list[tuple[str, bytes]] = []
+        self._hears = threading.Event()
         config = zenoh.Config()
-        config.insert_json5("mode", '"client"')
-        config.insert_json5("scouting/multicast/enabled", "false")
-        config.insert_json5("connect/endpoints", json.dumps([f"tcp/127.0.0.1:{port}"]))
+        where = [f"tcp/127.0.0.1:{port}" for port in ports]
+        for key, value in {**BEFORE, "mode": "peer", "connect/endpoints": where}.items():
+            config.insert_json5(key, json.dumps(value))
         self._session = zenoh.open(config)
-        self._ear = self._session.declare_subscriber("nl2robot/**", self._hear)
+        self._ear = self._session.declare_subscriber("nl2robot/*/all/*", self._hear)
+        self._more = self._session.declare_subscriber("nl2robot/*/to/*", self._hear)
+        assert self._hears.wait(60.0)
 
     def _hear(self, sample: Any) -> None:
         self.heard.append((str(sample.key_expr), sample.payload.to_bytes()))
+        self._hears.set()
 
     def talks(self, robots: list[str]) -> None:
-        heard = [each for each in self.heard if "/alive/" not in each[0]]
+        heard = list(self.heard)
         for where, raw in self._chance.sample(heard, min(200, len(heard))):
             changed = bytearray(raw)
             changed[self._chance.randrange(len(raw))] ^= 1
@@ -77,12 +84,17 @@ class Day:
         self.happened: Counter[str] = Counter()
         self.ids: dict[str, str] = {}
         self.called = {name: name for name in names} | {names[-1]: names[-2]}
+        self.stranger = names[1]
+        """Whose station no other robot trusts."""
         self.unknown: list[float] = []
         self.stops: list[float] = []
         self.outsider: Outsider | None = None
 
     def begins(self) -> None:
-        for name in self.names:
+        homes = {name: self.ward.folder / name for name in self.names}
+        for name, home in homes.items():
+            for each in set(self.names) - {name, self.stranger}:
+                trust(home, each, Station(homes[each]).public)
             self._starts(name)
         for name in self.names:
             found = self.ward.until(name, self._all_known)
@@ -100,11 +112,11 @@ class Day:
     def alive(self) -> list[str]:
         return [each for each in self.names if each not in self.dead]
 
-    def is_given_something(self) -> None:
+    def is_given_something(self, lasts: int = 20) -> None:
         at = self.chance.choice(self.alive)
         place = self.chance.choice(("ward a", "ward b", "corridor"))
         number = len(self.errands)
-        program = f'robot.goto("{place}")\nrobot.say("{number}")\nrobot.wait(20)\n'
+        program = f'robot.goto("{place}")\nrobot.say("{number}")\nrobot.wait({lasts})\n'
         wanted = {"robot": self.ids[self.chance.choice(self.names)]} if number % 4 == 3 else {}
         try:
             id = self.ward.run(at, program, **wanted)
@@ -131,11 +143,14 @@ class Day:
                 ends = self.ward.links.items()
                 between = [link for (one, other), link in ends if (one in half) != (other in half)]
                 self._spoiled(self.chance.choice(("cut", "silent")), between)
-            case "killed":
-                name = self._busy() or self.chance.choice(self.alive)
-                if len(self.alive) > 2:
-                    self.ward.killed(name)
-                    self.dead.add(name)
+                self._say_what_they_do_not_know(half)
+            case "killed" if len(self.alive) > 2:
+                name = self._busy()
+                if name is not None:
+                    self.happened["killed in mid-run"] += 1
+                name = name or self.chance.choice(self.alive)
+                self.ward.killed(name)
+                self.dead.add(name)
             case "alone":
                 name = self._busy()
                 if name is not None:
@@ -153,8 +168,22 @@ class Day:
                 case "dumb":
                     link.silence("out")
 
+    def _say_what_they_do_not_know(self, half: set[str]) -> None:
+        """A console on one side of a cut knows of nobody on the other."""
+        name = self.chance.choice(self.alive)
+        others = {self.ids[each] for each in self.names if (each in half) != (name in half)}
+        began = time.monotonic()
+        self.ward.until(
+            name, lambda found: not others & {m["id"] for m in found["members"] if m["known"]}
+        )
+        self.unknown.append(time.monotonic() - began)
+
     def _busy(self) -> str | None:
-        """One that does something now, as it says itself."""
+        """One that does something now, as it says itself; it was just given to the fleet."""
+        self.is_given_something(lasts=150)
+        at, errand, _ = self.errands[-1]
+        if at in self.alive:
+            self.ward.ask(at, "wait", errand=errand, timeout=6.0)
         for name in self.chance.sample(self.alive, len(self.alive)):
             [here] = [each for each in self.ward.ask(name, "list")["members"] if each["here"]]
             if (here["standing"] or {}).get("state") == "running":
@@ -197,10 +226,12 @@ class Day:
             for at, _, program in self.errands
         }
         begun: Counter[str] = Counter()
+        of_the_stranger = {digest(each) for at, _, each in self.errands if at == self.stranger}
         where: dict[tuple[str, int], str] = {}
         for name, run in self.ward.runs():
             assert run.sha256 in approved, (name, run)  # nothing runs that nobody approved
             assert run.approved_by == approved[run.sha256]
+            assert run.sha256 not in of_the_stranger or name == self.stranger, (name, run)
             begun[run.sha256] += 1
             where[self.ids[name], run.id] = run.sha256
         assert all(times == 1 for times in begun.values()), begun  # nothing is begun twice
@@ -229,7 +260,7 @@ def day(tmp_path: Path, soak: bool) -> Iterator[Day]:
     ward.close()
 
 
-SHORT = ("wait", "cut", "alone", "mended", "killed", "wait", "mended")
+SHORT = ("wait", "cut", "mended", "killed", "mended", "alone")
 ALL = ("wait", "cut", "silent", "deaf", "dumb", "halves", "killed", "alone", "outsider", "mended")
 
 
@@ -240,8 +271,8 @@ def test_on_a_bad_day_nothing_is_done_twice_and_nothing_that_nobody_approved(
     began = time.monotonic()
     day.begins()
     up = time.monotonic()
-    outsider = day.outsider = Outsider(day.ward.ports[day.names[0]], day.chance)
-    for number in range(80 if soak else len(SHORT)):
+    outsider = day.outsider = Outsider(day.ward.ports.values(), day.chance)
+    for number in range(60 if soak else len(SHORT)):
         day.is_given_something()
         at, errand, _ = day.errands[-1]
         if at in day.alive:
@@ -255,6 +286,7 @@ def test_on_a_bad_day_nothing_is_done_twice_and_nothing_that_nobody_approved(
     over = time.monotonic()
     day.is_judged(ended)
     assert day.happened["alone in mid-run"] > 0 and day.unknown
+    assert day.happened["killed in mid-run"] > 0
     assert max(day.unknown) < 60.0 + UNKNOWN_AFTER
     print(
         f"up in {up - began:.0f} s, spoiled for {spoiled - up:.0f} s, all over"
