@@ -76,6 +76,8 @@ class Errand(msgspec.Struct, frozen=True, kw_only=True):
     robot: str | None = None
     """The id of the robot that may begin it, does it or did it."""
     robot_name: str | None = None
+    session: str = ""
+    """Of that robot's process that accepted it."""
     run: int | None = None
     message: str | None = None
     refused: dict[str, str] = {}

@@ -13,7 +13,7 @@ from __future__ import annotations
 import secrets
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, Literal
 
 from msgspec.structs import replace
 
@@ -44,8 +44,8 @@ class _Hand:
     """What is remembered of an errand beside the book."""
 
     since: float
-    offered: tuple[str, str, float] | None = None
-    """An offer that is not answered: its id, the robot's, and when it was made."""
+    offered: tuple[str, str, str, float] | None = None
+    """An offer that is not answered: its id, the robot's, its process, and when it was made."""
     said: float = float("-inf")
     """When an order was sent last."""
     resting: dict[str, float] = field(default_factory=dict)
@@ -104,30 +104,35 @@ class Dispatcher:
             elif errand.state == "begun" and now - hand.said >= FOLLOWS:
                 self._order(errand, hand, "ask", now)
 
-    def hear(self, sender: str, answer: Answer, now: float) -> None:
-        """What a robot says of an offer."""
+    def hear(self, sender: str, session: str, answer: Answer, now: float) -> None:
+        """What a process of a robot says of an offer."""
         for errand in tuple(self._open.values()):
             hand = self._hands.setdefault(errand.id, _Hand(now))
             offered = hand.offered
             if errand.state == "looking":
-                if offered is not None and offered[:2] == (answer.offer, sender):
+                # Of two processes with one id the word goes to the one that was asked.
+                if (
+                    offered is not None
+                    and offered[:2] == (answer.offer, sender)
+                    and (answer.stand != "accepted" or session == offered[2])
+                ):
                     self._decided(errand, hand, sender, answer, now)
                     return
             elif (errand.offer, errand.robot) == (answer.offer, sender):
                 self._goes(errand, hand, answer, now)
                 return
         if answer.stand == "accepted":  # nobody waits for it any more
-            self._say(sender, Order(offer=answer.offer, what="withdraw"))
+            self._say(sender, Order(offer=answer.offer, what="withdraw", session=session))
 
     # --- inside
 
     def _look(self, errand: Errand, hand: _Hand, now: float) -> None:
         if hand.offered is not None:
-            offer, robot, at = hand.offered
+            offer, robot, session, at = hand.offered
             if now - at < ANSWERS_WITHIN:
                 if now - hand.said >= AGAIN:
                     hand.said = now
-                    self._say(robot, _offer(errand, offer))
+                    self._say(robot, _offer(errand, offer, session))
                 return
             self._withdraw(errand)
             self._rests(errand, hand, robot, "It did not answer.", now)
@@ -149,9 +154,10 @@ class Dispatcher:
         busy |= {each.offered[1] for each in self._hands.values() if each.offered is not None}
         free = next((each for each in best if each not in busy), None)
         if free is not None:
-            hand.offered = (secrets.token_hex(8), free, now)
+            session = self._roll.members[free].session
+            hand.offered = (secrets.token_hex(8), free, session, now)
             hand.said = now
-            self._say(free, _offer(errand, hand.offered[0]))
+            self._say(free, _offer(errand, hand.offered[0], session))
 
     def _decided(self, errand: Errand, hand: _Hand, robot: str, answer: Answer, now: float) -> None:
         """What a robot says to an offer for which it was not told to go."""
@@ -159,11 +165,20 @@ class Dispatcher:
             hand.offered = None
             self._rests(errand, hand, robot, answer.why or "", now)
             return
+        assert hand.offered is not None
+        session = hand.offered[2]
         hand.offered = None
         member = self._roll.members.get(robot)
         name = member.name if member is not None else robot
         # In the book before it is said: from here on it is this robot's.
-        given = replace(errand, state="given", offer=answer.offer, robot=robot, robot_name=name)
+        given = replace(
+            errand,
+            state="given",
+            offer=answer.offer,
+            robot=robot,
+            robot_name=name,
+            session=session,
+        )
         self._order(self._keep(given), hand, "go", now)
 
     def _goes(self, errand: Errand, hand: _Hand, answer: Answer, now: float) -> None:
@@ -191,14 +206,14 @@ class Dispatcher:
     def _withdraw(self, errand: Errand) -> None:
         hand = self._hands.get(errand.id)
         if hand is not None and hand.offered is not None:
-            offer, robot, _ = hand.offered
+            offer, robot, session, _ = hand.offered
             hand.offered = None
-            self._say(robot, Order(offer=offer, what="withdraw"))
+            self._say(robot, Order(offer=offer, what="withdraw", session=session))
 
-    def _order(self, errand: Errand, hand: _Hand, what: str, now: float) -> None:
+    def _order(self, errand: Errand, hand: _Hand, what: Literal["go", "ask"], now: float) -> None:
         hand.said = now
         assert errand.robot is not None and errand.offer is not None
-        order = Order(offer=errand.offer, what="go" if what == "go" else "ask")
+        order = Order(offer=errand.offer, what=what, session=errand.session)
         self._say(errand.robot, order)
 
     def _keep(self, errand: Errand) -> Errand:
@@ -212,9 +227,10 @@ class Dispatcher:
         return errand
 
 
-def _offer(errand: Errand, offer: str) -> Order:
+def _offer(errand: Errand, offer: str, session: str) -> Order:
     return Order(
         offer=offer,
+        session=session,
         what="offer",
         program=errand.program,
         sha256=errand.sha256,

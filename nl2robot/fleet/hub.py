@@ -245,7 +245,7 @@ class Hub:
             case Order():
                 self._deeds.ordered(sender, message)
             case Answer():
-                self.dispatcher.hear(sender, message, now)
+                self.dispatcher.hear(sender, opened.session, message, now)
             case Stop():
                 self._deeds.stopped(sender, message)
             case Stopped():

@@ -21,7 +21,7 @@ from nl2robot.fleet.address import FleetAddress
 from nl2robot.fleet.book import FILE, Errand, FleetBook, Offer
 from nl2robot.fleet.hub import Deeds, Hub
 from nl2robot.fleet.key import fingerprint, fleet_key
-from nl2robot.fleet.messages import About, Answer, Order, Standing, Stop, Stopped, ZoneEntry
+from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped, ZoneEntry
 from nl2robot.fleet.network import Network
 from nl2robot.fleet.performing import Performer
 from nl2robot.fleet.trust import Station
@@ -423,15 +423,16 @@ class Fleet:
                 return
             sender, order = given
             try:
-                answer: Answer = self._performer.answer(sender, order)
+                answer = self._performer.answer(sender, order)
             except UserError as error:
                 _log.warning("%s", error)
                 continue
             except Exception:  # noqa: BLE001 - the next order is answered
                 _log.exception("an order is not answered")
                 continue
-            with self._lock:
-                self.hub.say("answer", answer, sender)
+            if answer is not None:
+                with self._lock:
+                    self.hub.say("answer", answer, sender)
 
     def _stop_for(self, sender: str, stop: Stop) -> None:
         """Once for each stop, however often it is said; each time it is answered how it stands."""

@@ -60,6 +60,9 @@ class Order(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     offer: str
     what: Literal["offer", "go", "withdraw", "ask"]
+    session: str = ""
+    """The process of the robot that it is for: of two with one id, as where a data folder was
+    copied, one alone may begin it."""
     program: str = ""
     sha256: str = ""
     sentence: str = ""

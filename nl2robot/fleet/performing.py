@@ -63,10 +63,12 @@ class Performer:
         self._accepted: tuple[str, float] | None = None
         """The offer that the robot waits for, and until when."""
 
-    def answer(self, sender: str, order: Order) -> Answer:
-        """What came of an order. Raises `UserError` if the book cannot be written: then nothing
-        was begun."""
+    def answer(self, sender: str, order: Order) -> Answer | None:
+        """What came of an order; None if it is for another process with this robot's id. Raises
+        `UserError` if the book cannot be written: then nothing was begun."""
         kept = self._book.offer(order.offer)
+        if kept is None and order.session not in ("", self._session):
+            return None
         if kept is not None and kept.sender != sender:
             return Answer(offer=order.offer, stand="refused")  # it is nobody else's to begin
         doubt = self._means.doubts(sender, order)

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from nl2robot.fleet.book import Errand, FleetBook, Offer
 from nl2robot.fleet.hub import Deeds, Hub
-from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped
+from nl2robot.fleet.messages import About, Answer, Order, Standing, Stop, Stopped
 from nl2robot.fleet.performing import Performer
 from nl2robot.fleet.trust import Station
 from nl2robot.review.review import digest
@@ -90,13 +90,20 @@ class FakeRobot:
     drift = 0.0
     """Seconds by which its clock is ahead."""
 
+    def answers(self, sender: str, order: Order) -> Answer:
+        """What it says to an order that is for it."""
+        answer = self.performer.answer(sender, order)
+        assert answer is not None
+        return answer
+
     def _ordered(self, sender: str, order: Order) -> None:
         try:
             answer = self.performer.answer(sender, order)
         except Killed:
             self.alive = False
             return
-        self.hub.say("answer", answer, sender)
+        if answer is not None:
+            self.hub.say("answer", answer, sender)
 
     def _stopped(self, sender: str, stop: Stop) -> None:
         self.stood.append(stop.because)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 import pytest
 
 from nl2robot.fleet.choosing import called, first_place, ranked
@@ -126,6 +128,29 @@ def test_two_of_one_name_are_told_apart(net: FakeNetwork) -> None:
     assert [each.id for each in ada.hub.roll.called(one.id)] == [one.id]
 
 
+def test_a_robot_whose_data_folder_was_copied_does_it_once(net: FakeNetwork) -> None:
+    """Two with one id, as two computers that were set up from one image."""
+    ada = net.robot("Ada", methods=("say",))
+    ben, copy = net.robot("Ben", x=9), net.robot("Ben", x=9)
+    copy.id = copy.book.robot = ben.id
+    net.goes_on(4.0)
+    for number in range(5):
+        program = f'robot.goto("pharmacy")\nrobot.say("{number}")\n'
+        ada.hub.dispatcher.add(errand(program), net.now)
+        net.goes_on(0.2 if number == 0 else 40.0)
+        if number == 0:  # from now on both are there
+            copy.starts()
+        for robot in net.robots:
+            robot.over |= dict.fromkeys(range(1, len(robot.runs) + 1), "done")
+        net.goes_on(40.0)
+    done = Counter(program for _, program in begun(net))
+    assert set(done.values()) == {1}, done
+    assert states(ada).count("begun") == 1  # the first, of which the other knows nothing
+    copy.alive = False
+    net.goes_on(10.0)
+    assert states(ada) == ["done"] * 5
+
+
 def test_clocks_ten_minutes_apart_do_not_matter(net: FakeNetwork) -> None:
     ada, ben = net.robot("Ada", x=0.0), net.robot("Ben", x=9.0)
     ben.drift = 600.0
@@ -168,15 +193,15 @@ def test_a_robot_that_is_killed_in_mid_run_says_so_when_it_is_back(net: FakeNetw
 
 def test_an_order_for_nothing_that_was_offered_begins_nothing(net: FakeNetwork) -> None:
     ada, ben = net.robot("Ada"), net.robot("Ben")
-    answer = ben.performer.answer(ada.id, Order(offer="7", what="go"))
+    answer = ben.answers(ada.id, Order(offer="7", what="go"))
     assert answer.stand == "expired"
     late = Order(offer="7", what="offer", program=WAY)
-    assert ben.performer.answer(ada.id, late).stand == "expired"
-    assert ben.performer.answer(ada.id, Order(offer="8", what="offer")).stand == "accepted"
-    assert ben.performer.answer(ada.id, Order(offer="9", what="offer")).stand == "refused"
-    assert ben.performer.answer("somebody else", Order(offer="8", what="go")).stand == "refused"
+    assert ben.answers(ada.id, late).stand == "expired"
+    assert ben.answers(ada.id, Order(offer="8", what="offer")).stand == "accepted"
+    assert ben.answers(ada.id, Order(offer="9", what="offer")).stand == "refused"
+    assert ben.answers("somebody else", Order(offer="8", what="go")).stand == "refused"
     net.now += 30.0
-    assert ben.performer.answer(ada.id, Order(offer="8", what="go")).stand == "expired"
+    assert ben.answers(ada.id, Order(offer="8", what="go")).stand == "expired"
     assert list(begun(net)) == []
 
 
@@ -254,8 +279,8 @@ def test_what_is_old_is_forgotten_but_not_that_it_was_begun(net: FakeNetwork) ->
     [begun_there] = ada.book.errands()
     for number in range(3):
         old = Order(offer=f"{number}", what="offer", program=WAY, by="Nurse Kim")
-        ben.performer.answer("another", old)
-        ben.performer.answer("another", Order(offer=f"{number}", what="withdraw"))
+        ben.answers("another", old)
+        ben.answers("another", Order(offer=f"{number}", what="withdraw"))
         ada.book.keep(errand(f'robot.say("{number}")\n', state="done"))
     for robot in (ada, ben):
         robot.book.forget(kept=1)

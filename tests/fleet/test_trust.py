@@ -94,14 +94,14 @@ def test_what_was_changed_after_it_was_signed_is_refused(
 ) -> None:
     """By whoever has the fleet's key."""
     changed = replace(offer(ada, ben), **change)
-    assert ben.performer.answer(ada.id, changed).stand == "refused"
-    assert ben.performer.answer(ada.id, offer(ada, ben)).stand == "accepted"
+    assert ben.answers(ada.id, changed).stand == "refused"
+    assert ben.answers(ada.id, offer(ada, ben)).stand == "accepted"
     begins = replace(offer(ada, ben, "go"), **{**change, "offer": "7"})
     if "offer" in change:
         begins = replace(begins, what="go", signature=offer(ada, ben).signature)
-    assert ben.performer.answer(ada.id, begins).stand == "accepted"  # nobody told him to begin
+    assert ben.answers(ada.id, begins).stand == "accepted"  # nobody told him to begin
     assert list(begun(net)) == []
-    assert ben.performer.answer(ada.id, offer(ada, ben, "go")).stand == "begun"
+    assert ben.answers(ada.id, offer(ada, ben, "go")).stand == "begun"
     assert list(begun(net)) == [("Ben", WAY)]
 
 
@@ -109,29 +109,29 @@ def test_what_was_signed_for_another_robot_or_from_another_is_refused(
     net: FakeNetwork, ada: FakeRobot, ben: FakeRobot
 ) -> None:
     cleo = net.robot("Cleo")
-    assert ben.performer.answer(ada.id, offer(ada, cleo)).stand == "refused"
-    assert ben.performer.answer(cleo.id, offer(ada, ben)).stand == "refused"
+    assert ben.answers(ada.id, offer(ada, cleo)).stand == "refused"
+    assert ben.answers(cleo.id, offer(ada, ben)).stand == "refused"
 
 
 def test_what_is_played_again_is_not_begun_again(
     net: FakeNetwork, ada: FakeRobot, ben: FakeRobot
 ) -> None:
     for what in ("offer", "go", "offer", "go"):
-        ben.performer.answer(ada.id, offer(ada, ben, what))
+        ben.answers(ada.id, offer(ada, ben, what))
     ben.starts()
     for what in ("offer", "go"):
-        ben.performer.answer(ada.id, offer(ada, ben, what))
+        ben.answers(ada.id, offer(ada, ben, what))
     assert list(begun(net)) == [("Ben", WAY)]
 
 
 def test_who_is_not_trusted_any_more_before_it_begins_begins_nothing(
     net: FakeNetwork, ada: FakeRobot, ben: FakeRobot, tmp_path: Path
 ) -> None:
-    ben.performer.answer(ada.id, offer(ada, ben))
+    ben.answers(ada.id, offer(ada, ben))
     distrust(tmp_path, "Ada")
-    assert ben.performer.answer(ada.id, offer(ada, ben, "go")).stand == "accepted"
+    assert ben.answers(ada.id, offer(ada, ben, "go")).stand == "accepted"
     net.now += 30.0
-    assert ben.performer.answer(ada.id, offer(ada, ben, "go")).stand == "expired"
+    assert ben.answers(ada.id, offer(ada, ben, "go")).stand == "expired"
     assert list(begun(net)) == []
 
 
@@ -139,12 +139,12 @@ def test_a_list_that_cannot_be_read_has_nobody_trusted(
     net: FakeNetwork, ada: FakeRobot, ben: FakeRobot, tmp_path: Path
 ) -> None:
     (tmp_path / TRUSTED).write_text(f"{ada.station.public} Ada\nnonsense\n", encoding="utf-8")
-    answer = ben.performer.answer(ada.id, offer(ada, ben))
+    answer = ben.answers(ada.id, offer(ada, ben))
     assert answer.stand == "refused" and "Line 2 of the list" in (answer.why or "")
     with pytest.raises(UserError, match="Line 2"):
         trust(tmp_path, "Cleo", ada.station.public)
     (tmp_path / TRUSTED).write_bytes(b"\xff\xfe")
-    assert "cannot be read" in (ben.performer.answer(ada.id, offer(ada, ben)).why or "")
+    assert "cannot be read" in (ben.answers(ada.id, offer(ada, ben)).why or "")
 
 
 def test_a_station_keeps_its_key_for_itself(tmp_path: Path) -> None:
