@@ -41,6 +41,14 @@ BEFORE: Final[Mapping[str, Any]] = {
 }
 """What holds unless Zenoh's configuration file says otherwise."""
 
+ENDPOINTS: Final = ("listen/endpoints", "connect/endpoints")
+TLS: Final = "transport/link/tls"
+ENCRYPTED: Final = ("tls", "quic")
+
+
+def encrypted(endpoint: str) -> bool:
+    return endpoint.partition("/")[0] in ENCRYPTED
+
 
 class Network:
     """A robot's connection to the others, which comes back by itself.
@@ -146,10 +154,19 @@ class Network:
                     f" ({_first(error)}). Check the file."
                 ) from error
         plain = made()
+
+        def silent(key: str) -> bool:
+            """Whether the file says nothing of it."""
+            return bool(config.get_json(key) == plain.get_json(key))
+
         finds = {each: address.finds for each in FINDING if address.finds}
-        for key, ours in {**BEFORE, **finds}.items():
+        ours_first = {**BEFORE, **finds}
+        named = (*address.listens, *address.connects)
+        if not silent(TLS) and all(map(encrypted, named)) and all(map(silent, ENDPOINTS)):
+            ours_first["transport/link/protocols"] = ENCRYPTED  # whoever is found
+        for key, ours in ours_first.items():
             # Where the file is silent, Zenoh would listen and look for others by itself.
-            if config.get_json(key) == plain.get_json(key) or key in finds:
+            if silent(key) or key in finds:
                 config.insert_json5(key, json.dumps(ours))
         for key, endpoints in (("listen", address.listens), ("connect", address.connects)):
             if endpoints:

@@ -178,6 +178,21 @@ def test_they_find_each_other_by_multicast_if_they_look(post: Post, finds: bool)
     assert meet(ada, "ben", box, SOON if finds else NEVER) == finds
 
 
+def test_who_encrypts_calls_nobody_without_it_whom_it_finds(post: Post, house: Authority) -> None:
+    said = scouting(port())
+    ada, _ = post.joins("ada", listens=(f"tcp/127.0.0.1:{port()}",), finds=True, said=said)
+    trusts = {**said, **tls(root_ca_certificate=str(house.file))}
+    _, box = post.joins("ben", finds=True, said=trusts)
+    assert not meet(ada, "ben", box, NEVER)
+
+
+def test_they_find_each_other_and_encrypt(post: Post, house: Authority) -> None:
+    trusts = {**scouting(port()), **tls(root_ca_certificate=str(house.file), **house.gives("ada"))}
+    ada, _ = post.joins("ada", listens=(f"tls/127.0.0.1:{port()}",), finds=True, said=trusts)
+    _, box = post.joins("ben", finds=True, said=trusts)
+    assert meet(ada, "ben", box, SOON)
+
+
 def test_a_configuration_that_only_speaks_of_tls_opens_no_port(
     post: Post, house: Authority
 ) -> None:
