@@ -20,6 +20,7 @@ from nl2robot.errors import UserError
 from nl2robot.fleet.address import FleetAddress
 from nl2robot.fleet.book import FILE, Errand, FleetBook, Offer
 from nl2robot.fleet.hub import Deeds, Hub
+from nl2robot.fleet.inbox import Inbox
 from nl2robot.fleet.key import fingerprint, fleet_key
 from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped, ZoneEntry
 from nl2robot.fleet.network import Network
@@ -93,7 +94,7 @@ class Fleet:
         self.book = FleetBook(folder / FILE if folder is not None else ":memory:")
         self._station = Station(folder)
         self._lock = threading.RLock()
-        self._heard: queue.SimpleQueue[Callable[[float], None] | None] = queue.SimpleQueue()
+        self._heard = Inbox()
         self._orders: queue.SimpleQueue[tuple[str, Order] | None] = queue.SimpleQueue()
         self._zones: queue.SimpleQueue[list[ZoneEntry] | None] = queue.SimpleQueue()
         self._pose: Mapping[str, Any] = {}
@@ -126,7 +127,9 @@ class Fleet:
             fingerprint(key),
             self.hub.me,
             self.hub.sealer.session,
-            lambda raw: self._heard.put(lambda now: self.hub.hear(raw, now)),
+            lambda raw, urgent: self._heard.put(
+                lambda came: self.hub.hear(raw, came), urgent=urgent
+            ),
             lambda robot, session: self._heard.put(lambda now: self.hub.gone(robot, session)),
             self._notify,
         )
@@ -368,16 +371,16 @@ class Fleet:
         ticked = float("-inf")
         while True:
             try:
-                heard = self._heard.get(timeout=max(0.0, ticked + TICKS - time.monotonic()))
+                came, heard = self._heard.get(max(0.0, ticked + TICKS - time.monotonic()))
                 if heard is None:
                     return
             except queue.Empty:
-                heard = None
+                came, heard = 0.0, None
             now = time.monotonic()
             try:
                 with self._lock:
                     if heard is not None:
-                        heard(now)
+                        heard(came)
                     if now - ticked >= TICKS:
                         ticked = now
                         self.hub.tick(now)

@@ -53,7 +53,8 @@ def encrypted(endpoint: str) -> bool:
 class Network:
     """A robot's connection to the others, which comes back by itself.
 
-    `heard(raw)` and `gone(robot, session)` are called in its threads, which they must not keep.
+    `heard(raw, urgent)` and `gone(robot, session)` are called in its threads, which they must not
+    keep.
     """
 
     def __init__(
@@ -62,7 +63,7 @@ class Network:
         fleet: str,
         robot: str,
         session: str,
-        heard: Callable[[bytes], None],
+        heard: Callable[[bytes, bool], None],
         gone: Callable[[str, str], None],
         warn: Callable[[str], None] = lambda sentence: None,
     ) -> None:
@@ -88,10 +89,10 @@ class Network:
                 " `pip install 'nl2robot[fleet]'`."
             ) from error
 
-        from zenoh import SampleKind
+        from zenoh import Priority, SampleKind
 
         def sample(sample: Any) -> None:
-            self._heard(sample.payload.to_bytes())
+            self._heard(sample.payload.to_bytes(), sample.priority == Priority.REAL_TIME)
 
         def alive(sample: Any) -> None:
             if sample.kind == SampleKind.DELETE:

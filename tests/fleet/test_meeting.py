@@ -56,8 +56,10 @@ class Mailbox:
     def __init__(self) -> None:
         self.came, self.warns = threading.Event(), threading.Event()
         self.sentences: list[str] = []
+        self.urgent = False
 
-    def comes(self, raw: bytes) -> None:
+    def comes(self, raw: bytes, urgent: bool) -> None:
+        self.urgent = urgent
         self.came.set()
 
     def warned(self, sentence: str) -> None:
@@ -98,6 +100,7 @@ def test_they_meet_encrypted(post: Post, house: Authority, both: bool) -> None:
     _, box = post.joins("ben", connects=(where,), said=tls(**trusts, **(shows if both else {})))
     assert meet(ada, "ben", box, SOON)
     assert box.sentences == []
+    assert box.urgent  # as it was said
 
 
 @pytest.mark.parametrize("trouble", ["another's", "ended", "of elsewhere", "none", "no TLS"])
