@@ -15,12 +15,13 @@ from typing import Annotated, Any, Final, TypedDict, TypeVar
 
 import anyio
 import msgspec
-from mcp.server.mcpserver import Context, MCPServer
+from mcp.server.mcpserver import Context
 from mcp.server.mcpserver.exceptions import ResourceError, ToolError
 from mcp_types import ToolAnnotations
 from pydantic import Field
 
 from nl2robot import __version__
+from nl2robot.assistant.arguments import SentenceServer
 from nl2robot.assistant.guide import INSTRUCTIONS, guide
 from nl2robot.assistant.link import Link
 from nl2robot.errors import UserError
@@ -32,6 +33,8 @@ from nl2robot.run.runs import Status
 from nl2robot.schedule.schedule import Listed
 from nl2robot.translate.outcome import Translation
 from robot_api.errors import NotPossible, RobotError, Stopped
+from robot_api.methods import MAX_TEXT
+from sandbox.limits import MAX_PROGRAM
 
 T = TypeVar("T")
 
@@ -45,6 +48,10 @@ _ASKS: Final = ToolAnnotations(read_only_hint=False, destructive_hint=False, ide
 _STOPS: Final = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=True)
 
 Language = Annotated[str, Field(pattern="^[a-z]{2}$", description="en, de or fr")]
+Text = Annotated[str, Field(min_length=1, max_length=MAX_TEXT, description="a plain sentence")]
+Program = Annotated[
+    str, Field(min_length=1, max_length=MAX_PROGRAM, description="see robot://programs")
+]
 Number = Annotated[int, Field(ge=1, description="the number of the proposal")]
 Seconds = Annotated[float, Field(ge=0, le=LONGEST_WAIT, description="how long to wait for it")]
 
@@ -102,9 +109,9 @@ class Ran(TypedDict):
     answers: list[str]
 
 
-def assistant_server(link: Link) -> MCPServer[Any]:
+def assistant_server(link: Link) -> SentenceServer:
     """A server with all that an assistant may do with this robot."""
-    server: MCPServer[Any] = MCPServer(
+    server = SentenceServer(
         "nl2robot",
         title="nl2robot",
         version=__version__,
@@ -130,7 +137,7 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         return await _asked(link.ask, "station.state", dict[str, Any])
 
     @server.tool(title="From a sentence to a program", annotations=_LOOKS)
-    async def translate(sentence: str, language: Language = "en") -> Translated:
+    async def translate(sentence: Text, language: Language = "en") -> Translated:
         """Turn a plain sentence, such as "go to the lobby and say hello", into a program. Moves
         nothing. Say the language of the sentence. If the status is clarify, ask whoever you work
         for."""
@@ -146,7 +153,7 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         )
 
     @server.tool(title="Try a program", annotations=_LOOKS)
-    async def check(program: str, language: Language = "en") -> Checked:
+    async def check(program: Program, language: Language = "en") -> Checked:
         """Review a program as people will see it: errors, risks, and a dry run in a simulator of
         this robot's world. Moves nothing."""
         asked = {"program": program, "language": language}
@@ -154,10 +161,19 @@ def assistant_server(link: Link) -> MCPServer[Any]:
 
     @server.tool(title="Propose a program", annotations=_ASKS)
     async def propose(
-        program: str,
-        sentence: Annotated[str, Field(description="what it does, for whom, in one sentence")],
+        program: Program,
+        sentence: Annotated[
+            str,
+            Field(
+                min_length=1,
+                max_length=MAX_TEXT,
+                description="what it does, for whom, in one sentence",
+            ),
+        ],
         context: Context[Any, Any],
-        why: Annotated[str, Field(description="what whoever decides should know")] = "",
+        why: Annotated[
+            str, Field(max_length=MAX_TEXT, description="what whoever decides should know")
+        ] = "",
         language: Language = "en",
     ) -> Proposed:
         """Lay a program before the people at the robot's console. It runs only when one of them

@@ -11,7 +11,7 @@ from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import anyio
 import pytest
@@ -198,6 +198,100 @@ def test_errors_are_sentences(served: Served) -> None:
             assert bad.is_error
             guide = (await client.read_resource("robot://programs")).contents[0].text  # type: ignore[union-attr]
             assert "def goto(self" in guide and "robot.places" in guide
+
+    play(story)
+
+
+NOT_AS_EXPECTED: Final[dict[str, tuple[str, dict[str, Any], str]]] = {
+    "no number": (
+        "decision",
+        {"proposal": "the last"},
+        "proposal of decision is “the last”. Expected: a whole number from 1"
+        " (the number of the proposal).",
+    ),
+    "too small a number, and too large a one": (
+        "decision",
+        {"proposal": -1, "wait_seconds": 1e9},
+        "proposal of decision is -1. Expected: a whole number from 1 (the number of the proposal)."
+        " wait_seconds of decision is 1000000000.0. Expected: a number from 0 to 50"
+        " (how long to wait for it).",
+    ),
+    "half a number": ("run", {"run": 1.5}, "run of run is 1.5. Expected: a whole number from 1"),
+    "missing": (
+        "propose",
+        {"sentence": "says hello"},
+        "propose needs program: a text, not empty, at most 64000 characters"
+        " (see robot://programs).",
+    ),
+    "a list": (
+        "check",
+        {"program": ["robot.dock()"]},
+        "program of check is a list. Expected: a text",
+    ),
+    "an object": ("check", {"program": {"a": 1}}, "program of check is an object. Expected"),
+    "nothing": ("translate", {"sentence": None}, "sentence of translate is nothing (null)."),
+    "empty": ("translate", {"sentence": ""}, "sentence of translate is “”. Expected: a text, not"),
+    "misspelt": (
+        "check",
+        {"program": "robot.dock()", "langage": "de"},
+        "check takes no argument “langage”. Did you mean language?",
+    ),
+    "unknown": (
+        "withdraw",
+        {"proposal": 1, "because_of_whom": "Kim"},
+        "withdraw takes no argument “because_of_whom”. It takes: proposal.",
+    ),
+    "where there are none": (
+        "robot_state",
+        {"robot": "robin"},
+        "robot_state takes no argument “robot”. Call it without any.",
+    ),
+    "too long": (
+        "check",
+        {"program": "#" * 64_001},
+        "program of check is a text of 64001 characters. Expected: a text, not empty, at most"
+        " 64000 characters",
+    ),
+    "another language": (
+        "translate",
+        {"sentence": "hallo", "language": "German"},
+        "language of translate is “German”. Expected: a text (en, de or fr).",
+    ),
+    "no such tool": (
+        "approve",
+        {"proposal": 1},
+        "There is no tool “approve”. There are: robot_world, ",
+    ),
+}
+
+
+def test_arguments_that_do_not_fit_are_told_in_sentences(served: Served) -> None:
+    """What was wrong and what is expected: an assistant can do better, and a person can read it."""
+
+    async def story() -> None:
+        async with assistant(served) as client:
+            for about, (tool, given, told) in NOT_AS_EXPECTED.items():
+                result = await client.call_tool(tool, given)
+                [part] = result.content
+                assert result.is_error and part.type == "text", about
+                assert part.text.startswith(told), f"{about}: {part.text}"
+                for jargon in ("pydantic", "validation", "Error executing", "input_value"):
+                    assert jargon not in part.text, about
+            refused = await client.call_tool("decision", {"proposal": 4711})
+            [part] = refused.content
+            assert part.type == "text" and part.text.startswith("There is no proposal 4711")
+            for tool in (await client.list_tools()).tools:
+                assert tool.input_schema["additionalProperties"] is False, tool.name
+
+    play(story)
+
+
+def test_a_stop_is_a_stop_whatever_comes_with_it(served: Served) -> None:
+    async def story() -> None:
+        async with assistant(served) as client:
+            assert await called(client, "stop", reason="a child", hurry=True) == {
+                "result": "The robot stands."
+            }
 
     play(story)
 
