@@ -18,9 +18,11 @@ import pytest
 from mcp import Client, StdioServerParameters
 from mcp.client.stdio import stdio_client
 from mcp.client.streamable_http import streamable_http_client
+from mcp_types import Implementation
 
 from nl2robot.assistant.link import MAY, connected
 from nl2robot.errors import UserError
+from nl2robot.proposals.proposals import MOST_WAITING
 from nl2robot.review.review import digest
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, RobotError
@@ -280,8 +282,8 @@ def test_arguments_that_do_not_fit_are_told_in_sentences(served: Served) -> None
             refused = await client.call_tool("decision", {"proposal": 4711})
             [part] = refused.content
             assert part.type == "text" and part.text.startswith("There is no proposal 4711")
-            for tool in (await client.list_tools()).tools:
-                assert tool.input_schema["additionalProperties"] is False, tool.name
+            for each in (await client.list_tools()).tools:
+                assert each.input_schema["additionalProperties"] is False, each.name
 
     play(story)
 
@@ -332,6 +334,32 @@ def test_over_http_for_several_and_for_no_web_page(served: Served) -> None:
         for headers in ({"Origin": "https://evil.example"}, {"Host": "evil.example"}):
             answer = httpx.post(url, json={}, headers=headers)
             assert answer.status_code in (403, 421), "a page of another site"
+
+
+def test_one_assistant_that_floods_leaves_room_for_the_next(served: Served) -> None:
+    """Though both came in by the same door, on the robot's own computer."""
+
+    async def story(url: str) -> None:
+        async with AsyncExitStack() as stack:
+            flood, desk = [
+                await stack.enter_async_context(
+                    Client(
+                        streamable_http_client(url),
+                        client_info=Implementation(name=name, version="1"),
+                    )
+                )
+                for name in ("flood", "night desk")
+            ]
+            asked = {"program": 'robot.say("Hello!")\n', "sentence": "says hello"}
+            made = [await called(flood, "propose", **asked) for _ in range(MOST_WAITING)]
+            refused = await flood.call_tool("propose", asked)
+            assert refused.is_error and "by you wait for a person already" in str(refused.content)
+            made.append(await called(desk, "propose", **asked))
+            for each in made:
+                await called(desk, "withdraw", proposal=each["proposal"])
+
+    with over_http(served) as url:
+        play(story, url)
 
 
 def test_a_server_with_other_accounts_asks_for_a_token(
