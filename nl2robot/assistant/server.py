@@ -9,6 +9,7 @@ long one. What goes wrong is a sentence that the assistant can act on.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Callable
 from typing import Annotated, Any, Final, TypedDict, TypeVar
@@ -30,6 +31,7 @@ from nl2robot.review.review import Review
 from nl2robot.run.answers import Sentence
 from nl2robot.run.runlog import Run
 from nl2robot.run.runs import Status
+from nl2robot.run.state import Phase
 from nl2robot.schedule.schedule import Listed
 from nl2robot.translate.outcome import Translation
 from robot_api.errors import NotPossible, RobotError, Stopped
@@ -42,6 +44,10 @@ LONGEST_WAIT: Final = 50.0
 """Seconds for which a tool waits; clients give up after a minute, as a rule."""
 REPORTS_EVERY: Final = 5.0
 """Seconds between two signs that it still waits."""
+
+SETTLES_WITHIN: Final = 10.0
+"""Seconds within which a program is over that was stopped, else it is told that it is not."""
+LOOKS_AGAIN: Final = 0.05
 
 _LOOKS: Final = ToolAnnotations(read_only_hint=True, open_world_hint=False)
 _ASKS: Final = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False)
@@ -133,8 +139,10 @@ def assistant_server(link: Link) -> SentenceServer:
 
     @server.tool(title="How the robot is", annotations=_LOOKS)
     async def robot_state() -> dict[str, Any]:
-        """What the robot does now: idle, running, paused, stopped, charging, lost ..."""
-        return await _asked(link.ask, "station.state", dict[str, Any])
+        """What the robot does now: idle, running, paused, stopped, charging, lost ...;
+        `in_words` says what that means."""
+        now = await _asked(link.ask, "station.state", dict[str, Any])
+        return {**now, "in_words": _IN_WORDS[now["state"]]}
 
     @server.tool(title="From a sentence to a program", annotations=_LOOKS)
     async def translate(sentence: Text, language: Language = "en") -> Translated:
@@ -254,6 +262,9 @@ def assistant_server(link: Link) -> SentenceServer:
     async def stop(context: Context[Any, Any]) -> str:
         """Stop the robot and its program, at once. Anybody may, at any time."""
         await _asked(link.stop, _name(context))
+        now = await _settled(link)
+        if now["state"] == "stopping":
+            return f"The robot stands. {_IN_WORDS['stopping']}"
         return "The robot stands."
 
     @server.tool(title="What is planned", annotations=_LOOKS)
@@ -295,6 +306,20 @@ async def _asked(ask: Callable[..., T], *arguments: Any) -> T:
         return await _tried_to_ask(ask, *arguments)
     except (RobotError, UserError) as error:
         raise ToolError(str(error)) from error
+
+
+async def _settled(link: Link) -> dict[str, Any]:
+    """How it is after a stop, once the program that was stopped is over, or after a while."""
+    ends = anyio.current_time() + SETTLES_WITHIN
+    while True:
+        now: dict[str, Any] = await _asked(link.ask, "station.state", dict[str, Any])
+        left = ends - anyio.current_time()
+        if now["state"] != "stopping" or now["run"] is None or left <= 0:
+            return now
+        with contextlib.suppress(Stopped, NotPossible):  # stopped once more, or another has begun
+            asked = {"run": now["run"], "timeout": left}
+            await _tried_to_ask(link.ask, "program.wait", Status, asked)
+        await anyio.sleep(LOOKS_AGAIN)
 
 
 async def _past(link: Link, number: int, language: str) -> Ran:
@@ -350,6 +375,20 @@ _LATER: Final = (
     "This is to be done later, or again and again ({when}). You cannot propose that: ask whoever"
     " you work for to say it at the robot's console."
 )
+_IN_WORDS: Final[dict[Phase, str]] = {
+    "idle": "Nothing goes on.",
+    "reviewing": "A program lies before a person who decides on it. Nothing moves.",
+    "charging": "The robot is at its charging station.",
+    "running": "An approved program runs.",
+    "pausing": "The program was told to pause. The robot may still move.",
+    "paused": "The robot has come to rest. Its program waits for a person.",
+    "stopping": (
+        "It was told to stop, and either the robot has not confirmed that it stands"
+        " (`unconfirmed`) or its program (`run`) is not over yet. Call robot_state again."
+    ),
+    "stopped": "The robot has confirmed that it stands, and nothing runs.",
+    "lost": "The robot cannot be reached, so nobody knows what it does.",
+}
 _WHAT_NOW: Final = {
     "waiting": "It waits for a person at the console, or at `nl2robot proposals`. Call decision.",
     "approved": "A person approved it, and it runs. Call run with its number.",

@@ -10,8 +10,9 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, cast
 
 import anyio
 import pytest
@@ -20,12 +21,13 @@ from mcp.client.stdio import stdio_client
 from mcp.client.streamable_http import streamable_http_client
 from mcp_types import Implementation
 
-from nl2robot.assistant.link import MAY, connected
+from nl2robot.assistant.link import MAY, Link, connected
+from nl2robot.assistant.server import assistant_server
 from nl2robot.errors import UserError
 from nl2robot.proposals.proposals import MOST_WAITING
 from nl2robot.review.review import digest
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, RobotError
+from robot_api.errors import AccessDenied, RobotError, Stopped
 from tests.console.conftest import Served, serving
 from tests.proposed import Asked
 
@@ -183,10 +185,51 @@ def test_it_may_stop_the_robot_at_any_time(served: Served) -> None:
                 run = asked.approve(asked.propose(program)["proposal"])["run"]
                 stopped = await called(client, "stop")
                 assert stopped == {"result": "The robot stands."}
+                after = await called(client, "robot_state")
+                assert (after["state"], after["run"]) == ("stopped", None)
+                assert "nothing runs" in after["in_words"]
                 ended = await called(client, "run", run=run)
                 assert ended["state"] == "stopped"
 
     play(story)
+
+
+def test_a_program_that_is_slow_to_end_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The robot stands, but the state is not "stopped" before the program is over."""
+    monkeypatch.setattr("nl2robot.assistant.server.SETTLES_WITHIN", 0.2)
+    slow = SlowToEnd(asked=0, over_after=3)
+    too_slow = SlowToEnd(asked=0, over_after=10**6)
+
+    async def story() -> None:
+        async with Client(assistant_server(cast(Link, slow))) as client:
+            assert await called(client, "stop") == {"result": "The robot stands."}
+            assert slow.asked > slow.over_after
+        async with Client(assistant_server(cast(Link, too_slow))) as client:
+            [told] = (await called(client, "stop")).values()
+            assert told.startswith("The robot stands. It was told to stop, and either")
+            now = await called(client, "robot_state")
+            assert now["state"] == "stopping" and "Call robot_state again" in now["in_words"]
+
+    play(story)
+
+
+@dataclass
+class SlowToEnd:
+    """A link to a robot whose program is over only when it was asked about so often."""
+
+    asked: int
+    over_after: int
+
+    def stop(self, who: str) -> None:
+        pass
+
+    def ask(self, method: str, kind: Any, parameters: Any = None) -> Any:
+        if method == "program.wait":
+            raise Stopped()
+        assert method == "station.state"
+        self.asked += 1
+        over = self.asked > self.over_after
+        return {"state": "stopped", "run": None} if over else {"state": "stopping", "run": 7}
 
 
 def test_errors_are_sentences(served: Served) -> None:
