@@ -1,8 +1,9 @@
 """The OpenRPC document of a robot's server: what `rpc.discover` answers.
 
 It follows the OpenRPC 1.3 specification; what that does not know stands beside it: events in
-`x-events`, and of a method its capability, whether it moves the body, its number in the paper, and
-the JSON Schema of its params as a whole, which says what of them goes together.
+`x-events`, the bytes that a frame has at most in `x-longest-frame`, and of a method its capability,
+whether it moves the body, its number in the paper, and the JSON Schema of its params as a whole,
+which says what of them goes together.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import msgspec
 
 from robot_api import errors, protocol
 from robot_api.driver import EVENTS, Capabilities
+from robot_api.frame import MAX_FRAME
 from robot_api.methods import METHODS, TEXT, Method, Parameter
 from robot_api.schema import parameter_schema, params_schema, result_schema
 
@@ -61,6 +63,7 @@ def openrpc(
             ),
         ],
         "components": {"errors": {kind.__name__: _error(kind) for kind in _error_kinds()}},
+        "x-longest-frame": MAX_FRAME,
         "x-events": {f"event.{kind}": data for kind, data in events.items()},
     }
 

@@ -3,7 +3,8 @@
 
 It is installed into an empty environment, with what locks/run.txt names, and used in an empty
 folder with an empty home: a sentence is translated, run in the simulated hospital, and its picture
-is there. Then all tutorials are followed, word by word.
+is there. Then all tutorials are followed, word by word. At last the doors are tried without the
+libraries that they need: each says in a sentence which to install.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ import os
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from tests.played import play
 
 ROOT = Path(__file__).parents[2]
+LIBRARIES = {"assistants": "mcp", "fleet": "eclipse-zenoh"}
+"""What doors need that not everybody has, by the extra that installs it."""
 SENTENCE = "go to the pharmacy and say good morning"
 
 
@@ -54,7 +58,28 @@ def main() -> int:
             (place / page.stem).mkdir()
             count = play(page, place / page.stem, installed=python.parent)
             print(f"{page.stem}: followed, {count} commands.")
+        subprocess.run(
+            [python, "-m", "pip", "uninstall", "--quiet", "-y", *LIBRARIES.values()], check=True
+        )
+        try_without_libraries(python.with_name("nl2robot"), alone)
     return 0
+
+
+def try_without_libraries(nl2robot: Path, environment: Mapping[str, str]) -> None:
+    """The command is installed there without `LIBRARIES`."""
+    subprocess.run([nl2robot, "fleet", "key"], env=environment, check=True, capture_output=True)
+    for extra, words in {
+        "assistants": ["mcp"],
+        "fleet": ["serve", "--port", "0", "--fleet", "ward/robin"],
+    }.items():
+        done = subprocess.run(
+            [nl2robot, *words], env=environment, capture_output=True, text=True, timeout=120
+        )
+        lines = done.stderr.strip().splitlines()
+        assert done.returncode == 2, (words, done)
+        assert f"pip install 'nl2robot[{extra}]'" in lines[-1], lines
+        assert not any(line.startswith("Traceback") for line in lines), lines
+        print(f"{' '.join(words)}: says without {LIBRARIES[extra]} what to install.")
 
 
 if __name__ == "__main__":

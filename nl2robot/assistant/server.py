@@ -9,18 +9,20 @@ long one. What goes wrong is a sentence that the assistant can act on.
 
 from __future__ import annotations
 
+import contextlib
 import functools
 from collections.abc import Callable
 from typing import Annotated, Any, Final, TypedDict, TypeVar
 
 import anyio
 import msgspec
-from mcp.server.mcpserver import Context, MCPServer
+from mcp.server.mcpserver import Context
 from mcp.server.mcpserver.exceptions import ResourceError, ToolError
 from mcp_types import ToolAnnotations
 from pydantic import Field
 
 from nl2robot import __version__
+from nl2robot.assistant.arguments import SentenceServer
 from nl2robot.assistant.guide import INSTRUCTIONS, guide
 from nl2robot.assistant.link import Link
 from nl2robot.errors import UserError
@@ -29,9 +31,12 @@ from nl2robot.review.review import Review
 from nl2robot.run.answers import Sentence
 from nl2robot.run.runlog import Run
 from nl2robot.run.runs import Status
+from nl2robot.run.state import Phase
 from nl2robot.schedule.schedule import Listed
 from nl2robot.translate.outcome import Translation
 from robot_api.errors import NotPossible, RobotError, Stopped
+from robot_api.methods import MAX_TEXT
+from sandbox.limits import MAX_PROGRAM
 
 T = TypeVar("T")
 
@@ -40,11 +45,19 @@ LONGEST_WAIT: Final = 50.0
 REPORTS_EVERY: Final = 5.0
 """Seconds between two signs that it still waits."""
 
+SETTLES_WITHIN: Final = 10.0
+"""Seconds within which a program is over that was stopped, else it is told that it is not."""
+LOOKS_AGAIN: Final = 0.05
+
 _LOOKS: Final = ToolAnnotations(read_only_hint=True, open_world_hint=False)
 _ASKS: Final = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=False)
 _STOPS: Final = ToolAnnotations(read_only_hint=False, destructive_hint=False, idempotent_hint=True)
 
 Language = Annotated[str, Field(pattern="^[a-z]{2}$", description="en, de or fr")]
+Text = Annotated[str, Field(min_length=1, max_length=MAX_TEXT, description="a plain sentence")]
+Program = Annotated[
+    str, Field(min_length=1, max_length=MAX_PROGRAM, description="see robot://programs")
+]
 Number = Annotated[int, Field(ge=1, description="the number of the proposal")]
 Seconds = Annotated[float, Field(ge=0, le=LONGEST_WAIT, description="how long to wait for it")]
 
@@ -102,9 +115,9 @@ class Ran(TypedDict):
     answers: list[str]
 
 
-def assistant_server(link: Link) -> MCPServer[Any]:
+def assistant_server(link: Link) -> SentenceServer:
     """A server with all that an assistant may do with this robot."""
-    server: MCPServer[Any] = MCPServer(
+    server = SentenceServer(
         "nl2robot",
         title="nl2robot",
         version=__version__,
@@ -126,11 +139,13 @@ def assistant_server(link: Link) -> MCPServer[Any]:
 
     @server.tool(title="How the robot is", annotations=_LOOKS)
     async def robot_state() -> dict[str, Any]:
-        """What the robot does now: idle, running, paused, stopped, charging, lost ..."""
-        return await _asked(link.ask, "station.state", dict[str, Any])
+        """What the robot does now: idle, running, paused, stopped, charging, lost ...;
+        `in_words` says what that means."""
+        now = await _asked(link.ask, "station.state", dict[str, Any])
+        return {**now, "in_words": _IN_WORDS[now["state"]]}
 
     @server.tool(title="From a sentence to a program", annotations=_LOOKS)
-    async def translate(sentence: str, language: Language = "en") -> Translated:
+    async def translate(sentence: Text, language: Language = "en") -> Translated:
         """Turn a plain sentence, such as "go to the lobby and say hello", into a program. Moves
         nothing. Say the language of the sentence. If the status is clarify, ask whoever you work
         for."""
@@ -146,7 +161,7 @@ def assistant_server(link: Link) -> MCPServer[Any]:
         )
 
     @server.tool(title="Try a program", annotations=_LOOKS)
-    async def check(program: str, language: Language = "en") -> Checked:
+    async def check(program: Program, language: Language = "en") -> Checked:
         """Review a program as people will see it: errors, risks, and a dry run in a simulator of
         this robot's world. Moves nothing."""
         asked = {"program": program, "language": language}
@@ -154,10 +169,19 @@ def assistant_server(link: Link) -> MCPServer[Any]:
 
     @server.tool(title="Propose a program", annotations=_ASKS)
     async def propose(
-        program: str,
-        sentence: Annotated[str, Field(description="what it does, for whom, in one sentence")],
+        program: Program,
+        sentence: Annotated[
+            str,
+            Field(
+                min_length=1,
+                max_length=MAX_TEXT,
+                description="what it does, for whom, in one sentence",
+            ),
+        ],
         context: Context[Any, Any],
-        why: Annotated[str, Field(description="what whoever decides should know")] = "",
+        why: Annotated[
+            str, Field(max_length=MAX_TEXT, description="what whoever decides should know")
+        ] = "",
         language: Language = "en",
     ) -> Proposed:
         """Lay a program before the people at the robot's console. It runs only when one of them
@@ -238,6 +262,9 @@ def assistant_server(link: Link) -> MCPServer[Any]:
     async def stop(context: Context[Any, Any]) -> str:
         """Stop the robot and its program, at once. Anybody may, at any time."""
         await _asked(link.stop, _name(context))
+        now = await _settled(link)
+        if now["state"] == "stopping":
+            return f"The robot stands. {_IN_WORDS['stopping']}"
         return "The robot stands."
 
     @server.tool(title="What is planned", annotations=_LOOKS)
@@ -279,6 +306,20 @@ async def _asked(ask: Callable[..., T], *arguments: Any) -> T:
         return await _tried_to_ask(ask, *arguments)
     except (RobotError, UserError) as error:
         raise ToolError(str(error)) from error
+
+
+async def _settled(link: Link) -> dict[str, Any]:
+    """How it is after a stop, once the program that was stopped is over, or after a while."""
+    ends = anyio.current_time() + SETTLES_WITHIN
+    while True:
+        now: dict[str, Any] = await _asked(link.ask, "station.state", dict[str, Any])
+        left = ends - anyio.current_time()
+        if now["state"] != "stopping" or now["run"] is None or left <= 0:
+            return now
+        with contextlib.suppress(Stopped, NotPossible):  # stopped once more, or another has begun
+            asked = {"run": now["run"], "timeout": left}
+            await _tried_to_ask(link.ask, "program.wait", Status, asked)
+        await anyio.sleep(LOOKS_AGAIN)
 
 
 async def _past(link: Link, number: int, language: str) -> Ran:
@@ -334,6 +375,20 @@ _LATER: Final = (
     "This is to be done later, or again and again ({when}). You cannot propose that: ask whoever"
     " you work for to say it at the robot's console."
 )
+_IN_WORDS: Final[dict[Phase, str]] = {
+    "idle": "Nothing goes on.",
+    "reviewing": "A program lies before a person who decides on it. Nothing moves.",
+    "charging": "The robot is at its charging station.",
+    "running": "An approved program runs.",
+    "pausing": "The program was told to pause. The robot may still move.",
+    "paused": "The robot has come to rest. Its program waits for a person.",
+    "stopping": (
+        "It was told to stop, and either the robot has not confirmed that it stands"
+        " (`unconfirmed`) or its program (`run`) is not over yet. Call robot_state again."
+    ),
+    "stopped": "The robot has confirmed that it stands, and nothing runs.",
+    "lost": "The robot cannot be reached, so nobody knows what it does.",
+}
 _WHAT_NOW: Final = {
     "waiting": "It waits for a person at the console, or at `nl2robot proposals`. Call decision.",
     "approved": "A person approved it, and it runs. Call run with its number.",

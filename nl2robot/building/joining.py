@@ -45,10 +45,12 @@ class House:
         stage: Stage,
         heard: Callable[[str, str], None] = lambda topic, text: None,
         stands: Callable[[], Iterable[tuple[str, Mapping[str, Any]]]] = tuple,
+        trouble: Callable[[str], Mapping[str, Any]] = trouble,
     ) -> None:
         """`stands`: asks the robot how it stands, and answers as its events `battery` and `pose`
-        would; it may take its time."""
+        would; it may take its time. `trouble` makes an event `notice` of a sentence."""
         self._stage = stage
+        self._trouble = trouble
         self._heard = heard
         self._stands = stands
         # Two clients of one name push each other out for ever, so each process has its own, in the
@@ -120,7 +122,7 @@ class House:
     def _tell(self, sentence: str) -> None:
         """The people here, by a notice."""
         _log.warning("%s", sentence)
-        self._notice = trouble(sentence)
+        self._notice = self._trouble(sentence)
         self._stage.publish("notice", self._notice)
 
     def _stop(self, because: str) -> None:

@@ -11,6 +11,7 @@ from nl2robot.run.going_on import recall_of
 from nl2robot.run.replay import replay
 from nl2robot.run.runlog import Run, RunLog
 from nl2robot.station.pictures import check_picture, draw
+from nl2robot.texts import texts_in
 from sim.simulation import Simulation
 from sim.world.loading import load_world
 
@@ -31,14 +32,16 @@ def replayed(log: RunLog, row: Run, terminal: Terminal, picture: str | None) -> 
         about = {"what": "call", "line": line, "method": method, "arguments": arguments}
         terminal.show_event("program", about)
 
+    words = texts_in(terminal.language, "log")
     recall = recall_of(log, row.continues)
     again = replay(row, log.calls(row.id), simulation, on_call, recall)
     terminal.show_end(again.status, again.message)
     for each in again.differences:
         terminal.console.print(each, style="yellow", markup=False)
     if not again.differences:
-        terminal.console.print("Every call came out as it did the first time.")
+        terminal.console.print(words["same"], markup=False)
     if picture is not None:
         draw(simulation.record, world, Path(picture))
-        terminal.console.print(f"Picture: {picture}", soft_wrap=True, markup=False)
+        told = words["picture"].format(file=picture)
+        terminal.console.print(told, soft_wrap=True, markup=False)
     return ExitStatus.OK if not again.differences else ExitStatus.FAILED

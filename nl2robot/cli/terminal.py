@@ -89,6 +89,9 @@ class Terminal:
     aloud = False
     """Whether answers are also to be heard, from the robot's own loudspeaker here."""
 
+    nobody = "nobody_there"
+    """What is said, by its key in `terminal.yaml`, when a question is not answered."""
+
     hears = False
     """Whether somebody may say "stop" at any time, and is to be listened to."""
 
@@ -228,8 +231,9 @@ class Terminal:
         insisting = review.acceptable and not review.came_through
         approving = "insist" if insisting else "approve"
         question = f"{approving}_edit_reject" if review.acceptable else "edit_reject"
+        asked, undecided = self.words[question], None
         while True:
-            answer = self.ask(self.words[question]).strip()
+            answer = self.ask(asked, undecided).strip()
             said = answer.lower().strip(" .!,")
             if insisting and not said:
                 return "reject", answer
@@ -244,6 +248,8 @@ class Terminal:
                 if self.editor is not None:
                     self.editor.remember(answer)  # a correction is a command
                 return None, answer
+            if not self.somebody_is_there:  # to read the question once more
+                asked, undecided = "", answer
 
     def next_line(self) -> str | None:
         """The next thing that somebody says or types on their own; None at the end of the input."""
@@ -253,13 +259,17 @@ class Terminal:
         except EOFError:
             return None
 
-    def ask(self, question: str) -> str:
-        """Read a line. The end of the input counts as no answer, and no answer as a refusal."""
+    def ask(self, question: str, undecided: str | None = None) -> str:
+        """Read a line. The end of the input counts as no answer, and no answer as a refusal.
+        `undecided`: what was answered before and was no answer."""
         try:
             return input(question)
         except EOFError:
             print()
-            raise UserError(self.words["nobody_there"], ExitStatus.NOT_APPROVED) from None
+            sentence = self.words[self.nobody]
+            if undecided is not None:
+                sentence = self.words["undecided"].format(answer=visible(undecided))
+            raise UserError(sentence, ExitStatus.NOT_APPROVED) from None
 
     def typed(self, seconds: float) -> str | None:
         """A line that is typed within so many seconds, without asking for one."""

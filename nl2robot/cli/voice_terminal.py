@@ -94,7 +94,7 @@ class VoiceTerminal(Terminal):
         except EOFError:
             return None
 
-    def ask(self, question: str) -> str:
+    def ask(self, question: str, undecided: str | None = None) -> str:
         self._show_prompt(question)
         try:
             return self._line(awake=True)

@@ -8,24 +8,55 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any, Final, NotRequired, TypedDict
 
 import msgspec
 
 from nl2robot.console.frame import frame
-from nl2robot.station.accounts import LONGEST_NAME, Session
+from nl2robot.station.accounts import LONGEST_NAME, Account, Failure, Session
 from nl2robot.station.entrance import PAGES_AT, Entrance
 from nl2robot.station.part import Backstage, Part
 from nl2robot.station.qr_code import as_svg
 from nl2robot.wire import service_of_call
 from robot_api.errors import AccessDenied, NotPossible
 from robot_api.server import Context, Service
-from robot_api.serving.roles import PAIRED, may
+from robot_api.serving.roles import PAIRED, Role, may
 
 HERE_ONLY: Final = (
     "This server answers this machine only, so no tablet can come in. Start it anew with"
     " `nl2robot serve --host 0.0.0.0`."
 )
+
+
+class Device(TypedDict):
+    """`nl2robot.station.accounts.Session`, and whether it is the asker's own."""
+
+    id: int
+    role: Role
+    account: str | None
+    label: str
+    made: float
+    made_by: str | None
+    used: float
+    link: bool
+    mine: bool
+
+
+class Devices(TypedDict):
+    """What tablets and people came in by, and who failed to."""
+
+    here_only: bool
+    devices: list[Device]
+    failures: list[Failure]
+    accounts: NotRequired[list[Account]]
+
+
+class Pairing(TypedDict):
+    """A link by which one tablet comes in, its QR code as a data URL, and until when."""
+
+    link: str
+    picture: str
+    ends: float | None
 
 
 def part(backstage: Backstage) -> Part:
@@ -88,6 +119,7 @@ def _services(entrance: Entrance) -> dict[str, Service]:
             listed,
             "List what tablets and people came in by, and who failed to; for administrators the"
             " accounts as well.",
+            result=Devices,
         ),
         "devices.pair": service_of_call(
             paired,
@@ -98,12 +130,14 @@ def _services(entrance: Entrance) -> dict[str, Service]:
                 "at": {"type": "string", "pattern": "^https?://[^/?#@]{1,200}$"},
             },
             "role label",
+            result=Pairing,
         ),
         "devices.withdraw": service_of_call(
             withdrawn,
             "Let nobody come in by this any more; whoever is connected by it is not from then on.",
             {"device": {"type": "integer", "minimum": 1}},
             "device",
+            result=None,
         ),
     }
 

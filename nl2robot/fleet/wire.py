@@ -5,13 +5,14 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any, Final, TypedDict
 
 import msgspec
 
 from nl2robot.errors import UserError
 from nl2robot.fleet.book import Errand
 from nl2robot.fleet.joining import Fleet
+from nl2robot.fleet.messages import About, Standing
 from nl2robot.knowledge import Knowledge
 from nl2robot.review.review import digest, review
 from nl2robot.run.runner import Runner
@@ -76,6 +77,28 @@ def approved(
     )
 
 
+class MemberTold(TypedDict):
+    """A robot of the fleet as this one has heard of it; `heard`: seconds ago by the clock here."""
+
+    id: str
+    name: str
+    here: bool
+    known: bool
+    heard: float
+    left: bool
+    twin: bool
+    same_map: bool
+    about: About | None
+    standing: Standing | None
+
+
+class FleetTold(TypedDict):
+    """The robots of the fleet, and what this one has given them to do, the newest first."""
+
+    members: list[MemberTold]
+    errands: list[Errand]
+
+
 def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
 
@@ -118,6 +141,7 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             " them to do, the newest first. `heard` is how many seconds ago by the clock here; one"
             " that is not `known` may stand any way.",
             observes=True,
+            result=FleetTold,
         ),
         "fleet.run": service_of_call(
             ran,

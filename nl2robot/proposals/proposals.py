@@ -14,8 +14,8 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
-from typing import Any, Final, Literal
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Final, Literal, NamedTuple
 
 import msgspec
 
@@ -31,6 +31,10 @@ MOST_WAITING: Final = 3
 MOST_WAITING_IN_ALL: Final = 12
 MOST_A_MINUTE: Final = 6
 """Of one proposer: each is tried in the simulator."""
+MOST_A_MINUTE_IN_ALL: Final = 24
+FOR_ACCOUNTS: Final = 4
+"""The part of all that, one in so many, that only proposers with an account can have: who has none
+is known by a connection and a name that they chose, and may come again and again as another."""
 KEPT: Final = 200
 """Proposals that are over and can still be asked about."""
 LOOKS_EVERY: Final = 0.5
@@ -76,6 +80,15 @@ class Proposal(msgspec.Struct, frozen=True, kw_only=True):
     """The program that was approved instead, if somebody changed it by hand."""
 
 
+class Proposer(NamedTuple):
+    """For whom limits hold: an account, whatever it calls itself; without one a name at a
+    connection, for several assistants may come over the same."""
+
+    account: str
+    connection: str = ""
+    name: str = ""
+
+
 class Made(msgspec.Struct, frozen=True, kw_only=True):
     """A proposal that waits, with what its review says to whoever made it."""
 
@@ -98,9 +111,8 @@ class Proposals:
         self._changed = threading.Condition()
         self._known: dict[int, Proposal] = {}
         """By number, the oldest first."""
-        self._tries: dict[str, deque[float]] = {}
-        """When each proposer tried, within the last minute."""
-        self._last = 0
+        self._tries: deque[tuple[float, Proposer]] = deque()
+        """When which proposer tried, within the last minute."""
 
     # --- whoever proposes
 
@@ -115,9 +127,10 @@ class Proposals:
         connection: str = "",
     ) -> Made:
         """Review a program, and lay it before the people who decide. `account`: what they came in
-        by, for which the limits hold, whatever they call themselves. Raises `UserError` if it has
-        an error, or if this proposer asks too much."""
-        self._check_pace(account)
+        by. Raises `UserError` if it has an error, or if this proposer, or all of them, ask too
+        much."""
+        proposer = _proposer(account, connection, by)
+        self._check_pace(proposer)
         review = self._runner.check(program, language)
         error = next((each for each in review.findings if each.severity == "error"), None)
         if error is not None:
@@ -128,10 +141,9 @@ class Proposals:
         now = self._clock()
         with self._changed:
             # Once more: several may have been reviewed at the same time.
-            self._check_room(account)
-            self._last += 1
+            self._check_room(proposer)
             made = Proposal(
-                id=self._last,
+                id=self._runner.log.next_proposal(),
                 program=program,
                 sha256=digest(program),
                 sentence=sentence,
@@ -307,33 +319,52 @@ class Proposals:
         for each in decided:
             self._tell(each)
 
-    def _check_pace(self, account: str) -> None:
-        """Raises `UserError` if this proposer has tried too often."""
+    def _check_pace(self, proposer: Proposer) -> None:
+        """Raises `UserError` if this proposer, or all of them, have tried too often."""
         self._expire()
         now = time.monotonic()
         with self._changed:
-            self._check_room(account)
-            tries = self._tries.setdefault(account, deque(maxlen=MOST_A_MINUTE))
-            if len(tries) == MOST_A_MINUTE and tries[0] > now - 60.0:
-                wait = 60.0 - (now - tries[0])
+            self._check_room(proposer)
+            while self._tries and self._tries[0][0] <= now - 60.0:
+                self._tries.popleft()
+            own = [when for when, by in self._tries if by == proposer]
+            if wait := _wait(own, MOST_A_MINUTE, now):
                 raise UserError(
                     f"{MOST_A_MINUTE} proposals a minute are the most. Wait {wait:.0f} seconds."
                 )
-            tries.append(now)
-            for quiet in [name for name, made in self._tries.items() if made[-1] < now - 60.0]:
-                del self._tries[quiet]
+            everybody = [when for when, _ in self._tries]
+            strangers = [when for when, by in self._tries if not by.account]
+            wait = _wait(everybody, MOST_A_MINUTE_IN_ALL, now)
+            if not proposer.account:
+                wait = max(wait, _wait(strangers, _of_strangers(MOST_A_MINUTE_IN_ALL), now))
+            if wait:
+                raise UserError(
+                    "All assistants together have proposed too much in the last minute. Wait"
+                    f" {wait:.0f} seconds."
+                )
+            self._tries.append((now, proposer))
 
-    def _check_room(self, account: str) -> None:
+    def _check_room(self, proposer: Proposer) -> None:
         """With the lock. Raises `UserError` if too much waits already."""
-        waiting = [each for each in self._known.values() if each.state == "waiting"]
-        if sum(each.account == account for each in waiting) >= MOST_WAITING:
+        waiting = [
+            _proposer(each.account, each.connection, each.by)
+            for each in self._known.values()
+            if each.state == "waiting"
+        ]
+        if waiting.count(proposer) >= MOST_WAITING:
             raise UserError(
-                f"{MOST_WAITING} proposals by you, or by others who come in as you do, wait for a"
-                " person already. Wait until one is decided, or withdraw one."
+                f"{MOST_WAITING} proposals by you wait for a person already. Wait until one is"
+                " decided, or withdraw one."
             )
         if len(waiting) >= MOST_WAITING_IN_ALL:
             raise UserError(
                 f"{MOST_WAITING_IN_ALL} proposals wait for a person already. Try again later."
+            )
+        most = _of_strangers(MOST_WAITING_IN_ALL)
+        if not proposer.account and sum(not each.account for each in waiting) >= most:
+            raise UserError(
+                f"{most} proposals of assistants without a token of their own wait for a person"
+                " already. Try again later, or ask for a token (`nl2robot accounts token NAME`)."
             )
 
     def _forget(self) -> None:
@@ -348,3 +379,17 @@ class Proposals:
         for left_out in ("program", "ran", "account", "connection"):
             del told[left_out]
         self._publish(KIND, told)
+
+
+def _proposer(account: str, connection: str, name: str) -> Proposer:
+    return Proposer(account) if account else Proposer("", connection, name)
+
+
+def _of_strangers(most: int) -> int:
+    """What is left of a limit to those without an account."""
+    return most - most // FOR_ACCOUNTS
+
+
+def _wait(tries: Sequence[float], most: int, now: float) -> float:
+    """Seconds until one more is within so many a minute; 0 if it is."""
+    return max(1.0, 60.0 - (now - tries[-most])) if len(tries) >= most else 0.0

@@ -88,9 +88,13 @@ CREATE TABLE IF NOT EXISTS movements (
     run INTEGER PRIMARY KEY REFERENCES runs(id),
     record BLOB NOT NULL             -- see nl2robot/run/kept_record.py
 );
+CREATE TABLE IF NOT EXISTS numbers (
+    of TEXT PRIMARY KEY,             -- "proposal": what is numbered, though it is kept elsewhere
+    last INTEGER NOT NULL            -- the last number that was given
+);
 """
 
-_VERSION = 10
+_VERSION = 11
 _ADDED = {
     "runs": {
         "start": "TEXT",
@@ -309,6 +313,20 @@ class RunLog:
             " (SELECT run FROM movements ORDER BY run DESC LIMIT 1 OFFSET ?)",
             kept,
         )
+
+    def next_proposal(self) -> int:
+        """A number for a proposal, which no other had or will have, also after a restart."""
+        sql = (
+            "INSERT INTO numbers VALUES ('proposal', 1)"
+            " ON CONFLICT (of) DO UPDATE SET last = last + 1 RETURNING last"
+        )
+        with self._lock, self._trouble():
+            if self._file is not None:
+                self._file.check()
+            [row] = self._db.execute(sql).fetchall()  # all of it: only then it is written
+            if self._file is not None:
+                self._file.note()
+        return int(row[0])
 
     # --- deleting
 

@@ -27,7 +27,7 @@ one is; no program can begin before. What is true at the same time is told besid
 
 from __future__ import annotations
 
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, TypedDict
 
 import msgspec
 
@@ -103,11 +103,22 @@ class State(msgspec.Struct, frozen=True, kw_only=True):
     """Before whom a program lies."""
 
 
-ON_WIRE: Final = (
-    *("sequence", "state", "since", "because", "run", "line"),
-    *("unconfirmed", "lost_since", "charging", "driven_by"),
-)
-"""The fields that others are told."""
+class Told(TypedDict):
+    """The fields of a `State` that others are told."""
+
+    sequence: int
+    state: Phase
+    since: float
+    because: str | None
+    run: int | None
+    line: int | None
+    unconfirmed: bool
+    lost_since: float | None
+    charging: bool
+    driven_by: str | None
+
+
+ON_WIRE: Final = tuple(Told.__annotations__)
 
 
 def on_wire(state: State) -> dict[str, Any]:

@@ -35,9 +35,10 @@ NoticeKind = Literal[
     "reminder_silent",
     "reminder_away",
     "reminder_gone",
+    "trouble",
 ]
-"""Those of a reminder tell what somebody has to see to; that it is done is only kept in the record
-(`nl2robot.schedule.reminders`)."""
+"""Trouble is one of our own sentences, about no appointment. Those of a reminder tell what somebody
+has to see to; that it is done is only kept in the record (`nl2robot.schedule.reminders`)."""
 NONE: Final = 0
 """The number of the appointment of what somebody had done at once."""
 
@@ -121,7 +122,7 @@ class Notice(msgspec.Struct, frozen=True, kw_only=True):
     time: float
     kind: NoticeKind
     appointment: int
-    """`NONE` if it is about a run without one; `parts` then has the "robot"."""
+    """`NONE` if it is about a run without one, or none at all; `parts` then has the "robot"."""
     occurrence: int | None
     parts: dict[str, Any]
     """What the sentence is about: see `nl2robot/data/schedules.yaml`, "notices"."""

@@ -175,11 +175,12 @@ class Clerk:
     # --- what was told
 
     def notices(self) -> list[Notice]:
-        """Those that were written since the last call, by any process, in order."""
+        """Those that were written since the last call, by any process, in order; without trouble,
+        which whoever had it has told already."""
         found = self._book.notices(self._told)
         if found:
             self._told = found[-1].id
-        return found
+        return [each for each in found if each.kind != "trouble"]
 
     # --- inside
 

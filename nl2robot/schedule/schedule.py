@@ -11,10 +11,11 @@ import threading
 from collections.abc import Callable, Sequence
 from datetime import date, datetime
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Any, Final, Protocol
 
 import msgspec
 
+from grammar.language import languages
 from nl2robot.errors import UserError
 from nl2robot.review.review import Review, digest
 from nl2robot.schedule.appointments import (
@@ -28,10 +29,10 @@ from nl2robot.schedule.appointments import (
     Notice,
     Occurrence,
 )
-from nl2robot.schedule.book import Book
+from nl2robot.schedule.book import Book, BookError
 from nl2robot.schedule.findings import encoded, findings_of
 from nl2robot.schedule.rhythm import Rhythm, checked, local, next_begin, next_time, times
-from nl2robot.schedule.telling import outcome, told, when
+from nl2robot.schedule.telling import outcome, told, trouble, when
 from nl2robot.schedule.triggers import Trigger
 from nl2robot.schedule.triggers import checked as checked_trigger
 from robot_api.errors import AccessDenied
@@ -295,10 +296,21 @@ class Schedule:
             if each.appointment in known or self._is_mine(each)
         ]
 
+    def trouble(self, sentence: str) -> dict[str, Any]:
+        """Keep one of our own sentences, about no appointment, among the notices; returns it as the
+        event `notice`. Without a number if the book is not to be written."""
+        try:
+            parts = {"sentence": sentence, "robot": self.robot}
+            notice = self.opened().tell("trouble", NONE, parts=parts)
+        except BookError:
+            return trouble(sentence)
+        said = {code: told(notice, code) for code in languages()}
+        return {**msgspec.to_builtins(notice), "told": said}
+
     # --- inside
 
     def _is_mine(self, notice: Notice) -> bool:
-        """Whether it is about a run of this robot without an appointment."""
+        """Whether it is about a run of this robot without an appointment, or its trouble."""
         return notice.appointment == NONE and self.robot in (None, notice.parts.get("robot"))
 
     def _open(self) -> Book:

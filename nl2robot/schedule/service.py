@@ -53,11 +53,12 @@ EVENTS: Final[Mapping[str, str]] = {
     " the book of appointments has changed; schedule.list tells all of it",
     "schedule.buttons": "buttons: those that the robot's face shows now, as the method of this name"
     " lists them",
-    "notice": "id, time, kind (missed | missed_many | overtaken | waits | ends_soon | ended |"
+    "notice": "id (null if the book of appointments cannot be written), time, kind (missed |"
+    " missed_many | overtaken | waits | ends_soon | ended |"
     " changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent |"
     " reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had"
-    " said at once), occurrence, parts, told (the sentence by language): what somebody has to know"
-    " who was not looking",
+    " said at once, and of trouble), occurrence, parts, told (the sentence by language): what"
+    " somebody has to know who was not looking",
 }
 
 _log = logging.getLogger(__name__)

@@ -18,7 +18,8 @@ _UTC: Final = "UTC"
 
 
 def trouble(sentence: str) -> dict[str, Any]:
-    """The event `notice` about no appointment: one of our own sentences, in each language."""
+    """The event `notice` about no appointment: one of our own sentences, in each language, where
+    there is no book in which it could be numbered. `Schedule.trouble` is the same with a number."""
     said = {code: in_language(sentence, code) or sentence for code in languages()}
     about = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
     return {**about, "occurrence": None, "parts": {}, "told": said}
@@ -28,6 +29,8 @@ def told(notice: Notice, language: str = "en", zone: str = _UTC) -> str:
     """A notice as a sentence. `zone`: whose clocks tell the time of what has no rhythm."""
     texts = texts_in(language, "schedules")
     parts: dict[str, Any] = dict(notice.parts)
+    if notice.kind == "trouble":
+        return _sentence(parts["sentence"], language)
     zone = parts.get("zone", zone)
     if "due" in parts:
         parts["due"] = a_moment(parts["due"], zone, language)

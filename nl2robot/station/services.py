@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, TypedDict
 
 import msgspec
 
@@ -15,10 +15,11 @@ from grammar.samples import samples
 from nl2robot.review.review import Review
 from nl2robot.run import trouble
 from nl2robot.run.answers import Sentence, answer
+from nl2robot.run.going_on import DoneCall
 from nl2robot.run.runlog import Run
 from nl2robot.run.runner import Runner
 from nl2robot.run.runs import Approval, Status
-from nl2robot.run.state import GOING, Reviewing
+from nl2robot.run.state import GOING, Reviewing, Told
 from nl2robot.schedule.schedule import Schedule
 from nl2robot.station.local_clock import moment_in
 from nl2robot.translate.outcome import Translation
@@ -60,6 +61,20 @@ EVENTS: Mapping[str, str] = {
     " What was spoken only the microphone's client is told",
 }
 """The events that these services publish."""
+
+
+class LeftOver(TypedDict):
+    """`nl2robot.run.going_on.Unfinished`, with where it goes on and what is told of it."""
+
+    run: int
+    program: str
+    sha256: str
+    utterance: str | None
+    done: list[DoneCall]
+    again: DoneCall | None
+    stood: dict[str, float] | None
+    line: int
+    told: list[str]
 
 
 def services(
@@ -180,6 +195,7 @@ def services(
             " is named; null if nothing is. It goes on as any program: approved, with `continues`.",
             {"run": NUMBER, "language": LANGUAGE},
             observes=True,
+            result=LeftOver | None,
         ),
         "program.reviewing": service_of_call(
             reviewed,
@@ -260,6 +276,7 @@ def services(
             "Tell how the robot and its program stand, as the event `state` does.",
             observes=True,
             lane="control",
+            result=Told,
         ),
         "program.pause": service(
             lambda p: runner.pause(),

@@ -424,7 +424,7 @@ def _open(
             if keeper is not None:
                 keeper.note("message", {"topic": topic, "text": text})
 
-        house = House(broker, name, backstage, said_in_house, stands)
+        house = House(broker, name, backstage, said_in_house, stands, schedule.trouble)
     if company is not None:
         company.watch(backstage)
     added = console(backstage) if console else None

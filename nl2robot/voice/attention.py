@@ -15,7 +15,7 @@ import threading
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal, TypedDict
 
 from nl2robot.speech.audio import Converter
 from nl2robot.wire import LANGUAGE, service_of_call
@@ -31,6 +31,13 @@ FORGOTTEN_AFTER: Final = 20.0
 """Seconds without sound after which a page has left."""
 LARGEST_BLOCK: Final = 200_000
 """Characters of a block, in base64: some seconds of sound."""
+
+
+class Noticed(TypedDict):
+    """A word that was heard; `time` is in seconds of sound."""
+
+    what: Literal["hotword", "stop"]
+    time: float
 
 
 @dataclass(eq=False)
@@ -120,6 +127,7 @@ class Attention:
                     "language": LANGUAGE,
                 },
                 "rate",
+                result=int,
             ),
             "voice.notice": service_of_call(
                 lambda p, context: self.notice(context.connection, p["attention"], p["sound"]),
@@ -128,12 +136,14 @@ class Attention:
                 " is the client's.",
                 {"attention": number, "sound": {"type": "string", "maxLength": LARGEST_BLOCK}},
                 "attention sound",
+                result=list[Noticed],
             ),
             "voice.ignore": service_of_call(
                 lambda p, context: self.ignore(context.connection, p["attention"]),
                 "Listen for the hot word no more.",
                 {"attention": number},
                 "attention",
+                result=None,
             ),
         }
 

@@ -17,7 +17,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal, NotRequired, TypedDict
 
 import msgspec
 
@@ -65,6 +65,19 @@ AT_ONCE: Final = 0.5
 
 TalkOf = Callable[[str | None], Talk]
 """The conversation of this name."""
+
+
+class Happened(TypedDict):
+    """What there was to tell of a microphone; `translation` is what was heard as a program."""
+
+    what: Literal[
+        "began", "partial", "thinking", "heard", "given up", "too long", "nothing", "stop"
+    ]
+    text: NotRequired[str]
+    stop: NotRequired[bool]
+    doubtful: NotRequired[bool]
+    perhaps: NotRequired[str | None]
+    translation: NotRequired[Translation]
 
 
 @dataclass(frozen=True, eq=False)
@@ -350,11 +363,13 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
                 "held": {"type": "boolean"},
             },
             "rate",
+            result=int,
         ),
         "voice.ready": service(
             lambda p: microphones.get_ready(p.get("language", "en")),
             "Load what hears a language: somebody is about to speak.",
             {"language": LANGUAGE},
+            result=None,
         ),
         "voice.push": service(
             lambda p: microphones.push(p["microphone"], p["sound"]),
@@ -364,6 +379,7 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
             " robot.stop then is the client's.",
             {"microphone": number, "sound": {"type": "string", "maxLength": LARGEST_BLOCK}},
             "microphone sound",
+            result=list[Happened],
         ),
         "voice.close": service_of_call(
             lambda p, context: microphones.close(p["microphone"], context.stop),
@@ -371,5 +387,6 @@ def voice_services(microphones: Microphones) -> dict[str, Service]:
             {"microphone": number},
             "microphone",
             for_caller=True,
+            result=list[Happened],
         ),
     }

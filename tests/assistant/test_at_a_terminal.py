@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -78,6 +79,31 @@ def test_whoever_says_no_may_say_why(
     assert proposals("1", typed=("r", "They sleep.")) == ExitStatus.NOT_APPROVED
     found = ward.ask("show", id=1)
     assert (found["state"], found["reason"]) == ("declined", "They sleep.")
+
+
+@pytest.mark.parametrize(
+    ("piped", "told"),
+    [
+        ("", "Nobody is there to answer, so the proposal waits on."),
+        ("a\n", "“a” decides nothing here, so nothing was run."),
+    ],
+)
+def test_a_script_that_answers_otherwise_is_asked_once_and_told(
+    piped: str,
+    told: str,
+    ward: Asked,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Who runs on does so until somebody insists, for which an "approve" is not enough."""
+    ward.propose('robot.goto("ward a")\nint("two")\n')
+    monkeypatch.setattr("sys.stdin", io.StringIO(piped))
+    command = ["proposals", "1", "--robot", f"ws://{ward.robot.address}"]
+    assert main(command) == ExitStatus.NOT_APPROVED
+    said = capsys.readouterr()
+    assert said.out.count("It did not come to its end when it was tried.") == 1
+    assert told in said.err and "--yes" not in said.err
+    assert ward.ask("show", id=1)["state"] == "waiting"
 
 
 def test_ctrl_c_stops_what_was_approved(

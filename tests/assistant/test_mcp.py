@@ -10,20 +10,24 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Final, cast
 
 import anyio
 import pytest
 from mcp import Client, StdioServerParameters
 from mcp.client.stdio import stdio_client
 from mcp.client.streamable_http import streamable_http_client
+from mcp_types import Implementation
 
-from nl2robot.assistant.link import MAY, connected
+from nl2robot.assistant.link import MAY, Link, connected
+from nl2robot.assistant.server import assistant_server
 from nl2robot.errors import UserError
+from nl2robot.proposals.proposals import MOST_WAITING
 from nl2robot.review.review import digest
 from robot_api.client import Robot
-from robot_api.errors import AccessDenied, RobotError
+from robot_api.errors import AccessDenied, RobotError, Stopped
 from tests.console.conftest import Served, serving
 from tests.proposed import Asked
 
@@ -181,10 +185,51 @@ def test_it_may_stop_the_robot_at_any_time(served: Served) -> None:
                 run = asked.approve(asked.propose(program)["proposal"])["run"]
                 stopped = await called(client, "stop")
                 assert stopped == {"result": "The robot stands."}
+                after = await called(client, "robot_state")
+                assert (after["state"], after["run"]) == ("stopped", None)
+                assert "nothing runs" in after["in_words"]
                 ended = await called(client, "run", run=run)
                 assert ended["state"] == "stopped"
 
     play(story)
+
+
+def test_a_program_that_is_slow_to_end_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The robot stands, but the state is not "stopped" before the program is over."""
+    monkeypatch.setattr("nl2robot.assistant.server.SETTLES_WITHIN", 0.2)
+    slow = SlowToEnd(asked=0, over_after=3)
+    too_slow = SlowToEnd(asked=0, over_after=10**6)
+
+    async def story() -> None:
+        async with Client(assistant_server(cast(Link, slow))) as client:
+            assert await called(client, "stop") == {"result": "The robot stands."}
+            assert slow.asked > slow.over_after
+        async with Client(assistant_server(cast(Link, too_slow))) as client:
+            [told] = (await called(client, "stop")).values()
+            assert told.startswith("The robot stands. It was told to stop, and either")
+            now = await called(client, "robot_state")
+            assert now["state"] == "stopping" and "Call robot_state again" in now["in_words"]
+
+    play(story)
+
+
+@dataclass
+class SlowToEnd:
+    """A link to a robot whose program is over only when it was asked about so often."""
+
+    asked: int
+    over_after: int
+
+    def stop(self, who: str) -> None:
+        pass
+
+    def ask(self, method: str, kind: Any, parameters: Any = None) -> Any:
+        if method == "program.wait":
+            raise Stopped()
+        assert method == "station.state"
+        self.asked += 1
+        over = self.asked > self.over_after
+        return {"state": "stopped", "run": None} if over else {"state": "stopping", "run": 7}
 
 
 def test_errors_are_sentences(served: Served) -> None:
@@ -198,6 +243,100 @@ def test_errors_are_sentences(served: Served) -> None:
             assert bad.is_error
             guide = (await client.read_resource("robot://programs")).contents[0].text  # type: ignore[union-attr]
             assert "def goto(self" in guide and "robot.places" in guide
+
+    play(story)
+
+
+NOT_AS_EXPECTED: Final[dict[str, tuple[str, dict[str, Any], str]]] = {
+    "no number": (
+        "decision",
+        {"proposal": "the last"},
+        "proposal of decision is “the last”. Expected: a whole number from 1"
+        " (the number of the proposal).",
+    ),
+    "too small a number, and too large a one": (
+        "decision",
+        {"proposal": -1, "wait_seconds": 1e9},
+        "proposal of decision is -1. Expected: a whole number from 1 (the number of the proposal)."
+        " wait_seconds of decision is 1000000000.0. Expected: a number from 0 to 50"
+        " (how long to wait for it).",
+    ),
+    "half a number": ("run", {"run": 1.5}, "run of run is 1.5. Expected: a whole number from 1"),
+    "missing": (
+        "propose",
+        {"sentence": "says hello"},
+        "propose needs program: a text, not empty, at most 64000 characters"
+        " (see robot://programs).",
+    ),
+    "a list": (
+        "check",
+        {"program": ["robot.dock()"]},
+        "program of check is a list. Expected: a text",
+    ),
+    "an object": ("check", {"program": {"a": 1}}, "program of check is an object. Expected"),
+    "nothing": ("translate", {"sentence": None}, "sentence of translate is nothing (null)."),
+    "empty": ("translate", {"sentence": ""}, "sentence of translate is “”. Expected: a text, not"),
+    "misspelt": (
+        "check",
+        {"program": "robot.dock()", "langage": "de"},
+        "check takes no argument “langage”. Did you mean language?",
+    ),
+    "unknown": (
+        "withdraw",
+        {"proposal": 1, "because_of_whom": "Kim"},
+        "withdraw takes no argument “because_of_whom”. It takes: proposal.",
+    ),
+    "where there are none": (
+        "robot_state",
+        {"robot": "robin"},
+        "robot_state takes no argument “robot”. Call it without any.",
+    ),
+    "too long": (
+        "check",
+        {"program": "#" * 64_001},
+        "program of check is a text of 64001 characters. Expected: a text, not empty, at most"
+        " 64000 characters",
+    ),
+    "another language": (
+        "translate",
+        {"sentence": "hallo", "language": "German"},
+        "language of translate is “German”. Expected: a text (en, de or fr).",
+    ),
+    "no such tool": (
+        "approve",
+        {"proposal": 1},
+        "There is no tool “approve”. There are: robot_world, ",
+    ),
+}
+
+
+def test_arguments_that_do_not_fit_are_told_in_sentences(served: Served) -> None:
+    """What was wrong and what is expected: an assistant can do better, and a person can read it."""
+
+    async def story() -> None:
+        async with assistant(served) as client:
+            for about, (tool, given, told) in NOT_AS_EXPECTED.items():
+                result = await client.call_tool(tool, given)
+                [part] = result.content
+                assert result.is_error and part.type == "text", about
+                assert part.text.startswith(told), f"{about}: {part.text}"
+                for jargon in ("pydantic", "validation", "Error executing", "input_value"):
+                    assert jargon not in part.text, about
+            refused = await client.call_tool("decision", {"proposal": 4711})
+            [part] = refused.content
+            assert part.type == "text" and part.text.startswith("There is no proposal 4711")
+            for each in (await client.list_tools()).tools:
+                assert each.input_schema["additionalProperties"] is False, each.name
+
+    play(story)
+
+
+def test_a_stop_is_a_stop_whatever_comes_with_it(served: Served) -> None:
+    async def story() -> None:
+        async with assistant(served) as client:
+            assert await called(client, "stop", reason="a child", hurry=True) == {
+                "result": "The robot stands."
+            }
 
     play(story)
 
@@ -238,6 +377,32 @@ def test_over_http_for_several_and_for_no_web_page(served: Served) -> None:
         for headers in ({"Origin": "https://evil.example"}, {"Host": "evil.example"}):
             answer = httpx.post(url, json={}, headers=headers)
             assert answer.status_code in (403, 421), "a page of another site"
+
+
+def test_one_assistant_that_floods_leaves_room_for_the_next(served: Served) -> None:
+    """Though both came in by the same door, on the robot's own computer."""
+
+    async def story(url: str) -> None:
+        async with AsyncExitStack() as stack:
+            flood, desk = [
+                await stack.enter_async_context(
+                    Client(
+                        streamable_http_client(url),
+                        client_info=Implementation(name=name, version="1"),
+                    )
+                )
+                for name in ("flood", "night desk")
+            ]
+            asked = {"program": 'robot.say("Hello!")\n', "sentence": "says hello"}
+            made = [await called(flood, "propose", **asked) for _ in range(MOST_WAITING)]
+            refused = await flood.call_tool("propose", asked)
+            assert refused.is_error and "by you wait for a person already" in str(refused.content)
+            made.append(await called(desk, "propose", **asked))
+            for each in made:
+                await called(desk, "withdraw", proposal=each["proposal"])
+
+    with over_http(served) as url:
+        play(story, url)
 
 
 def test_a_server_with_other_accounts_asks_for_a_token(

@@ -4,19 +4,22 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
+from nl2robot.errors import UserError
 from nl2robot.proposals import proposals as proposing
-from nl2robot.review.review import digest
+from nl2robot.review.review import Review, digest
 from nl2robot.run.runlog import RunLog
+from nl2robot.run.runner import Runner
 from nl2robot.station.station import simulated_station
 from robot_api.client import Robot
 from robot_api.errors import AccessDenied, InvalidCall, NotPossible
 from sim.world.loading import load_world
-from tests.proposed import Asked
+from tests.proposed import HELLO, Asked
 
 LONG = 'while True:\n    robot.goto("ward a")\n    robot.goto("ward b")\n'
 
@@ -35,6 +38,22 @@ def ward(log: RunLog) -> Iterator[Asked]:
         station.connect() as robot,
     ):
         yield Asked(robot)
+
+
+@dataclass
+class ReviewsAtOnce:
+    """The part of a runner that proposals are made with."""
+
+    log: RunLog
+
+    def check(self, program: str, language: str) -> Review:
+        sha256 = digest(program)
+        return Review(program=program, sha256=sha256, findings=(), reading=(), dry_run=None)
+
+
+def known_proposals(log: RunLog) -> proposing.Proposals:
+    """Without a server, for whoever has an account; each comes through the review at once."""
+    return proposing.Proposals(cast(Runner, ReviewsAtOnce(log)), lambda kind, data: None)
 
 
 def test_somebody_approves_it_and_it_runs_in_both_their_names(ward: Asked, log: RunLog) -> None:
@@ -125,17 +144,86 @@ def test_only_few_wait_and_one_that_is_taken_back_makes_room(ward: Asked) -> Non
 
 
 def test_a_flood_is_refused_in_sentences(ward: Asked, log: RunLog) -> None:
-    """Whatever it calls itself each time."""
     refused = []
-    for number in range(100):
+    for _ in range(100):
         try:
-            made = ward.propose(by=f"assistant {number}")["proposal"]
+            made = ward.propose()["proposal"]
             ward.ask("withdraw", id=made["id"])
         except InvalidCall as error:
             refused.append(str(error))
     assert len(refused) == 100 - proposing.MOST_A_MINUTE
     assert all("proposals a minute are the most. Wait" in each for each in refused)
     assert log.runs() == []
+
+
+def test_one_that_floods_takes_no_room_of_others(ward: Asked) -> None:
+    """Not even of one that came over the same connection, as two assistants of one door do."""
+    for _ in range(proposing.MOST_WAITING):
+        ward.propose(by="flood")
+    for _ in range(20):
+        with pytest.raises(InvalidCall, match="by you wait for a person already"):
+            ward.propose(by="flood")
+    ward.propose(by="night desk")
+    with Robot(ward.robot.address) as other:
+        Asked(other).propose(by="flood")  # which is not the same one
+
+
+def test_whoever_has_an_account_has_room_whatever_others_call_themselves(
+    log: RunLog,
+) -> None:
+    """One that takes another name each time has no more than all who are known by nothing else."""
+    proposals = known_proposals(log)
+    refused = []
+    for number in range(50):
+        try:
+            proposals.make(HELLO, "flood", by=f"assistant {number}", connection=f"{number}")
+        except UserError as error:
+            refused.append(str(error))
+    at_most = proposing.MOST_WAITING_IN_ALL * 3 // 4
+    assert len(refused) == 50 - at_most
+    assert all("without a token of their own" in each for each in refused)
+    for _ in range(proposing.MOST_WAITING_IN_ALL - at_most):
+        proposals.make(HELLO, "the evening round", by="night desk", account="night desk")
+    with pytest.raises(UserError, match="12 proposals wait for a person already"):
+        proposals.make(HELLO, "one more", by="day desk", account="day desk")
+
+
+def test_all_together_propose_only_so_often(log: RunLog) -> None:
+    """Those with an account as well, though they have more of it than those without."""
+    proposals = known_proposals(log)
+
+    def tried(**who: str) -> str | None:
+        try:
+            made = proposals.make(HELLO, "hello", by="somebody", **who).proposal
+            proposals.withdraw(made.id, made.account, made.connection)
+        except UserError as error:
+            return str(error)
+        return None
+
+    strangers = [tried(connection=f"{number}") for number in range(30)]
+    most = proposing.MOST_A_MINUTE_IN_ALL
+    assert strangers.count(None) == most * 3 // 4
+    known = [tried(account=f"desk {number}") for number in range(10)]
+    assert known.count(None) == most // 4
+    for each in (*strangers, *known):
+        assert each is None or each.startswith("All assistants together have proposed too much")
+
+
+def test_a_number_never_means_another_proposal(tmp_path: Path) -> None:
+    """Also when the server was started again meanwhile: whoever waits for an old one is told."""
+    numbers: list[int] = []
+    for _ in range(2):
+        log = RunLog(tmp_path / "kept.sqlite")
+        with (
+            simulated_station(load_world("ward"), log, seed=1) as station,
+            station.connect() as robot,
+        ):
+            for old in numbers:
+                with pytest.raises(InvalidCall, match=f"There is no proposal {old}"):
+                    Asked(robot).ask("wait", id=old)
+            numbers.append(Asked(robot).propose()["proposal"]["id"])
+        log.close()
+    assert numbers == [1, 2]
 
 
 def test_nobody_decides_in_time(ward: Asked, monkeypatch: pytest.MonkeyPatch) -> None:

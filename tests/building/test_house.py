@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import queue
+import socket
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
@@ -180,3 +181,19 @@ def test_serve_tells_at_its_terminal_that_the_broker_refuses_the_password(
     typed = ("serve", "--world", "ward", "--port", "0", "--mqtt", address)
     with closing(Command(typed, False, None, "false")) as server:
         server.until("refuses this server (Not authorized)")
+
+
+def test_a_broker_that_is_away_is_told_of_as_any_other_notice(tmp_path: Path) -> None:
+    """With a number, for those who look later and to tell one from the next."""
+    with socket.socket() as nobody:
+        nobody.bind(("127.0.0.1", 0))
+        port = nobody.getsockname()[1]
+    with living_in(port, tmp_path) as robot:
+        found: list[Any] = []
+        while not found:
+            found = robot.request("schedule.notices", {"language": "de"})
+    [told] = found
+    about = told["notice"]
+    assert (about["id"], about["kind"], about["appointment"]) == (1, "trouble", 0)
+    assert f"127.0.0.1:{port}" in about["parts"]["sentence"]
+    assert "nicht zu erreichen" in told["told"] or "nicht erreichbar" in told["told"], told["told"]

@@ -49,11 +49,22 @@ def test_rejected_it_is_declined_and_what_it_says_is_only_text(
     page = look(f"/?proposal={made['id']}", width=390, dark=True)
     expect(page.locator("#conversation")).to_contain_text(TRAP.replace('"', "'"))
     expect(page).not_to_have_title("1")
+    page.get_by_label("If you reject it, why?").fill(" They sleep.  ")
     page.locator("#reject").click()
-    assert assistant.ask("wait", id=made["id"], timeout=30)["state"] == "declined"
+    decided = assistant.ask("wait", id=made["id"], timeout=30)
+    assert (decided["state"], decided["reason"]) == ("declined", "They sleep.")
     page = look(f"/?proposal={made['id']}")
     expect(page.locator("#conversation")).to_contain_text("does not wait for a decision any more")
     expect(page.locator("#approve")).to_have_count(0)
+
+
+def test_nobody_has_to_say_why_not(look: Look, assistant: Asked) -> None:
+    made = assistant.propose('robot.say("Hello!")\n')["proposal"]
+    page = look(f"/?proposal={made['id']}")
+    page.locator("#reject").click()
+    decided = assistant.ask("wait", id=made["id"], timeout=30)
+    assert (decided["state"], decided["reason"]) == ("declined", None)
+    expect(page.locator("#why-not")).to_have_count(0)
 
 
 def test_taken_back_while_it_is_looked_at_it_cannot_be_approved(

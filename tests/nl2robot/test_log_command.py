@@ -55,3 +55,24 @@ def test_what_was_done_by_hand_is_listed(nl2robot, log) -> None:
     assert "goto(place='lobby')" in nl2robot("log", "--by-hand")[1]
     told = json.loads(nl2robot("log", "--by-hand", "--json")[1])
     assert (told["who"], told["arguments"]) == ("Ruth", {"place": "lobby"})
+
+
+@pytest.mark.parametrize(
+    ("language", "empty", "listed", "detailed"),
+    [
+        ("de", "Es wurde noch nichts ausgeführt.", "gescheitert", "frei:       von Kim um"),
+        ("fr", "Rien n'a encore été exécuté.", "échoué", "approuvé:   par Kim à"),
+    ],
+)
+def test_it_is_told_in_the_language_asked_for(
+    nl2robot, log, language: str, empty: str, listed: str, detailed: str
+) -> None:
+    assert empty in nl2robot("log", "--lang", language)[1]
+    run = log.begin(program="robot.say('a')", sha256="", approved_by="Kim", approved_at=0.0)
+    log.call_begins(run, 1, 1, "goto", '{"place": "ward z"}')
+    log.call_ends(run, 1, 0.1, error="Blocked: My left track is off.")
+    log.end(run, "failed", "My left track is off.")
+    assert listed in nl2robot("log", "--lang", language)[1]
+    told = nl2robot("log", str(run), "--lang", language)[1]
+    assert detailed in told and "My left track is off." in told
+    assert "approved" not in told and "failed" not in told

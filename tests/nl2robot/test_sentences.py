@@ -45,7 +45,7 @@ SAYING = {
     "nl2robot/console/floor/localising.py": {"UserError"},
     "nl2robot/console/drive/helm.py": WHILE_IT_WORKS | {"AccessDenied"},
     "nl2robot/console/face/video.py": WHILE_IT_WORKS,
-    "nl2robot/commands": {"UserError", "ArgumentTypeError"},
+    "nl2robot/cli": {"UserError", "ArgumentTypeError"},
     "nl2robot/station/accounts.py": {"UserError"},
     "nl2robot/station/certificates.py": {"UserError"},
     "nl2robot/checks/canned.py": {"UserError"},
@@ -127,6 +127,7 @@ def said_by_argparse() -> set[str]:
 
 def files(under: str) -> list[Path]:
     path = ROOT / under
+    assert path.exists(), f"{under} is there no more: say where what it said is said now"
     return [path] if path.is_file() else sorted(path.rglob("*.py"))
 
 

@@ -50,6 +50,8 @@ function untitled(schema) {
   if (typeof schema !== 'object' || schema === null) return schema;
   const {title, ...rest} = schema;
   const kept = typeof title === 'object' ? schema : rest; // a property that is called so
+  // An object of which nothing more is said may have anything in it.
+  if (schema.type === 'object' && !schema.properties) kept.additionalProperties ??= true;
   return Object.fromEntries(Object.entries(kept).map(([name, part]) => [name, untitled(part)]));
 }
 
@@ -91,6 +93,7 @@ process.stdout.write(
     await typed('Methods', methods(), BANNER),
     await typed('ErrorName', errors),
     await typed('Events', whole(events)),
+    `/** Bytes. */\nexport type LongestFrame = ${described['x-longest-frame']};\n`,
     '/** The kinds of events that can be subscribed to. */\nexport type EventName = keyof Events;\n',
   ].join('\n') + TAIL,
 );

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Mapping
 from datetime import datetime
+from typing import Any
 
 import msgspec
 
 from nl2robot.changes import difference
+from nl2robot.cli.options.sentence import add_language
 from nl2robot.cli.options.values import whole
 from nl2robot.cli.run_log import open_log
 from nl2robot.cli.terminal import Terminal
@@ -16,6 +19,8 @@ from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
 from nl2robot.run.retention import DAY
 from nl2robot.run.runlog import Run, RunLog
+from nl2robot.run.trouble import call_trouble, told
+from nl2robot.texts import texts_in
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,11 +45,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="DAYS",
         help="delete what is known of all runs that are older",
     )
+    add_language(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     log = open_log()
-    terminal = Terminal()
+    terminal = Terminal(language=options.lang)
     if options.picture is not None and not options.replay:
         raise UserError("A picture is made of a replay. Add --replay.")
     if options.delete_older_than is not None:
@@ -80,8 +86,9 @@ def run(options: argparse.Namespace) -> int:
 
 def _delete(log: RunLog, terminal: Terminal, runs: list[int]) -> int:
     log.delete(runs)
-    told = "One run was" if len(runs) == 1 else f"{len(runs)} runs were"
-    terminal.console.print(f"{told} deleted: what was said, done and seen, and the pictures.")
+    words = _words(terminal)
+    sentence = words["deleted_one" if len(runs) == 1 else "deleted"].format(number=len(runs))
+    terminal.console.print(sentence, markup=False)
     return ExitStatus.OK
 
 
@@ -92,12 +99,14 @@ def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
             print(json.dumps(log.whole(row), ensure_ascii=False))
         return
     if not runs:
-        terminal.console.print('Nothing was run yet. Try: nl2robot run "say hello"')
+        terminal.console.print(_words(terminal)["nothing_yet"], markup=False)
         return
-    table = terminal.table("run", "when", "who", "how", "what")
+    table = terminal.table(*_words(terminal)["runs"])
     for row in reversed(runs):
         what = row.utterance or row.program.strip().partition("\n")[0]
-        table.add_row(str(row.id), _when(row.started), row.approved_by, _how(row), visible(what))
+        table.add_row(
+            str(row.id), _when(row.started), row.approved_by, _how(row, terminal), visible(what)
+        )
     terminal.console.print(table, markup=False)
 
 
@@ -109,9 +118,9 @@ def _by_hand(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> No
             print(json.dumps(about, ensure_ascii=False))
         return
     if not done:
-        terminal.console.print("Nobody had the robot do anything without a program yet.")
+        terminal.console.print(_words(terminal)["nothing_by_hand"], markup=False)
         return
-    table = terminal.table("when", "who", "what")
+    table = terminal.table(*_words(terminal)["by_hand"])
     for each in reversed(done):
         table.add_row(_when(each.time), visible(each.who), _call(each.method, each.arguments))
     terminal.console.print(table, markup=False)
@@ -124,38 +133,48 @@ def _call(method: str, arguments: str) -> str:
 
 
 def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
+    words, language = _words(terminal), terminal.language
     about = {
-        "run": f"{row.id}, {_how(row)}",
+        "run": f"{row.id}, {_how(row, terminal)}",
         "heard": row.heard,
         "understood": row.utterance,
-        "approved": f"by {row.approved_by} at {_when(row.approved_at)}",
-        "changed": f"by hand by {row.changed_by}" if row.changed_by else None,
-        "robot": f"{row.robot} in {row.world}",
-        "message": row.message,
+        "approved": words["approved"].format(who=row.approved_by, when=_when(row.approved_at)),
+        "changed": words["changed"].format(who=row.changed_by) if row.changed_by else None,
+        "robot": words["robot"].format(robot=row.robot, world=row.world),
+        "message": told(None, row.message, language) if row.message else None,
         "picture": row.picture,
         "program": f"SHA-256 {row.sha256[:16]}…",
     }
     for name, value in about.items():
         if value:
-            line = visible(f"{name + ':':<12}{value}")
+            line = visible(f"{words['about'][name] + ':':<12}{value}")
             terminal.console.print(line, markup=False, soft_wrap=True)
     if row.proposed is not None:
-        changed = difference(row.proposed, row.program, "proposed", "approved")
+        names = words["was_proposed"], words["was_approved"]
+        changed = difference(row.proposed, row.program, *names)
         terminal.console.print(visible(changed), markup=False, soft_wrap=True)
     terminal.show_program(row.program)
-    table = terminal.table("", "line", "call", "result", "seconds")
+    table = terminal.table(*words["calls"])
     for call in log.calls(row.id):
         result = call.error or ("" if call.result in (None, "null") else call.result)
-        seconds = "never came back" if call.seconds is None else f"{call.seconds:.2f}"
-        told = _call(call.method, call.arguments)
-        table.add_row(str(call.number), str(call.line), told, result, seconds)
+        if language != "en":
+            result = call_trouble(call, language) or result
+        seconds = words["never_came_back"] if call.seconds is None else f"{call.seconds:.2f}"
+        asked = _call(call.method, call.arguments)
+        table.add_row(str(call.number), str(call.line), asked, result, seconds)
     terminal.console.print(table, markup=False)
     for text in log.output(row.id):
-        terminal.console.print(f"printed: {visible(text).rstrip()}", markup=False)
+        printed = words["printed"].format(text=visible(text).rstrip())
+        terminal.console.print(printed, markup=False)
 
 
-def _how(row: Run) -> str:
-    return row.status or ("running" if row.going_on else "interrupted")
+def _words(terminal: Terminal) -> Mapping[str, Any]:
+    return texts_in(terminal.language, "log")
+
+
+def _how(row: Run, terminal: Terminal) -> str:
+    status = row.status or ("running" if row.going_on else "interrupted")
+    return str(_words(terminal)["how"].get(status, status))
 
 
 def _when(seconds: float) -> str:

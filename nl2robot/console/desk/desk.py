@@ -310,7 +310,7 @@ class Desk:
             await self._do(dialogue.planned, appointment, when, language)
 
         async def reject(event: GenericEventArguments) -> None:
-            await self._do(dialogue.reject, language, who)
+            await self._do(dialogue.reject, language, who, str(event.args["reason"]))
 
         def shade(event: GenericEventArguments) -> None:
             self.editor.theme = "githubDark" if event.args["dark"] else "githubLight"

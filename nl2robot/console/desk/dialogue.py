@@ -40,6 +40,7 @@ from nl2robot.translate.translation import STOP, translate
 from nl2robot.words import words_in
 from robot_api.driver import StopFlag
 from robot_api.errors import AccessDenied, NotPossible, RobotError, Stopped
+from robot_api.methods import MAX_TEXT
 
 LINES_KEPT: Final = 200
 
@@ -557,13 +558,15 @@ class Dialogue:
         )
         return runner.run(approval.id)
 
-    def reject(self, language: str, who: str = "") -> None:
-        """Nothing of it is done."""
+    def reject(self, language: str, who: str = "", reason: str = "") -> None:
+        """Nothing of it is done. `reason`: for whoever proposed it."""
         with self._turn:
             if self.draft is not None:
                 if self.draft.proposal is not None:
                     with suppress(UserError):  # somebody else was faster
-                        self._backstage.proposals.decline(self.draft.proposal, who)
+                        proposals = self._backstage.proposals
+                        why = " ".join(reason.split())[:MAX_TEXT]
+                        proposals.decline(self.draft.proposal, who, why or None)
                 self.draft = None
                 self._tell(Line("robot", _said("rejected", language)))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, TypedDict
 
 from grammar.language import load_language
 from grammar.naming import naming
@@ -14,6 +14,23 @@ from nl2robot.run.trouble import told
 from nl2robot.words import foreseen
 
 MOST_PLACES: Final = 12
+
+
+class MarkTold(TypedDict):
+    """Something to know of a line."""
+
+    line: int
+    weight: Literal["error", "risk", "note"]
+    text: str
+
+
+class Outcome(TypedDict):
+    """An outlook for scripts; each fact is a heading with its items."""
+
+    outcome: str
+    good: bool
+    facts: list[tuple[str, list[str]]]
+    marks: list[MarkTold]
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from typing import Any
 
 from nl2robot.console.desk.desk import Desk
 from nl2robot.console.desk.dialogues import Dialogues
-from nl2robot.console.desk.outlook import outlook
-from nl2robot.console.desk.run_view import run_view
+from nl2robot.console.desk.outlook import Outcome, outlook
+from nl2robot.console.desk.run_view import RunShown, run_view
 from nl2robot.console.floor import page as map_page
 from nl2robot.console.frame import frame
 from nl2robot.console.visitor import texts
@@ -22,6 +22,15 @@ from nl2robot.station.local_clock import moment_in
 from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import LANGUAGE, service
 from sandbox.limits import MAX_PROGRAM
+
+
+class DeskReview(Outcome):
+    """A review as the desk tells it; `reading` is line, depth, text."""
+
+    sha256: str
+    acceptable: bool
+    came_through: bool
+    reading: list[tuple[int, int, str]]
 
 
 def part(backstage: Backstage) -> Part:
@@ -68,12 +77,14 @@ def part(backstage: Backstage) -> Part:
                     "at": {"type": "string", "maxLength": 40},
                 },
                 "program",
+                result=DeskReview,
             ),
             "desk.run": service(
                 lambda p: run_view(backstage, p.get("language", "en")),
                 "Tell how the present or last run stands, with its program and calls.",
                 {"language": LANGUAGE},
                 observes=True,
+                result=RunShown | None,
             ),
         },
         pages=pages,

@@ -2,14 +2,52 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypedDict
 
 import msgspec
 
 from nl2robot.console.desk.highlight import highlighted
 from nl2robot.review.review import reading
+from nl2robot.run.runs import State as RunState
 from nl2robot.run.trouble import call_trouble, told
 from nl2robot.station.part import Backstage
+
+
+class LineShown(TypedDict):
+    """A line of a program: its HTML, and what it says."""
+
+    code: str
+    reading: str
+
+
+class CallShown(TypedDict):
+    """A call of a run."""
+
+    number: int
+    line: int
+    method: str
+    arguments: dict[str, Any]
+    result: Any
+    error: str | None
+    seconds: float | None
+
+
+class RunShown(TypedDict):
+    """`nl2robot.run.runs.Status` with what every page shows beside it."""
+
+    run: int
+    state: RunState
+    line: int | None
+    message: str | None
+    error: str | None
+    program: str
+    sha256: str
+    robot_lost_since: float | None
+    utterance: str | None
+    by: str | None
+    started: float | None
+    lines: list[LineShown]
+    calls: list[CallShown]
 
 
 def run_view(backstage: Backstage, language: str) -> dict[str, Any] | None:

@@ -11,16 +11,16 @@ import threading
 from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from typing import Any, Final
+from typing import Any, Final, TypedDict
 
 import msgspec
 
-from nl2robot.console.drive.helm import HOLDS, Helm, State
+from nl2robot.console.drive.helm import HOLDS, Helm, Operator, State
 from nl2robot.console.floor.localising import localise
 from nl2robot.run.state import Driven
 from nl2robot.station.by_hand import BUSY, ByHand
 from nl2robot.station.part import Backstage, Part
-from nl2robot.wire import an_object
+from nl2robot.wire import an_object, schema_of
 from robot_api.driver import Event, StopFlag
 from robot_api.errors import InvalidCall, NotPossible, RobotError, Stopped
 from robot_api.methods import SPEED, TURN_RATE
@@ -34,6 +34,24 @@ EVENTS: Mapping[str, str] = {
     "helm": "driver (the name of a connection, or null), who, since (seconds since the epoch),"
     " asking (a list of connection and who)",
 }
+
+
+class HelmTold(TypedDict):
+    """Who drives, and which of the connections is the asker's own."""
+
+    driver: str | None
+    who: str | None
+    since: float | None
+    asking: list[Operator]
+    me: str
+
+
+class LogLine(TypedDict):
+    """`time` is the local one, as 14:05:00."""
+
+    level: str
+    message: str
+    time: str
 
 
 class Controls:
@@ -216,21 +234,28 @@ def part(backstage: Backstage) -> Part:
 def _services(controls: Controls) -> dict[str, Service]:
     number = {"type": "integer", "minimum": 1}
     return {
-        "helm.state": _service(controls.state, "Tell who drives, and who asks to.", observes=True),
+        "helm.state": _service(
+            controls.state, HelmTold, "Tell who drives, and who asks to.", observes=True
+        ),
         "helm.take": _service(
             controls.take,
+            HelmTold,
             "Drive, if nobody does; else ask whoever does, with the event `helm`.",
             {"who": {"type": "string", "minLength": 1, "maxLength": 100}},
             "who",
         ),
         "helm.give": _service(
             controls.give,
+            HelmTold,
             "Hand the helm over to a connection that asks; without one, let it go.",
             {"to": {"type": ["string", "null"], "maxLength": 100}},
         ),
-        "helm.keep": _service(controls.keep, "Tell those who ask that you go on driving."),
+        "helm.keep": _service(
+            controls.keep, HelmTold, "Tell those who ask that you go on driving."
+        ),
         "helm.call": _service(
             controls.call,
+            Any,
             "A robot method, by name, with its arguments, from whoever drives; returns its result."
             " Ends with the connection. `stop` may be called by every operator.",
             {
@@ -242,6 +267,7 @@ def _services(controls: Controls) -> dict[str, Service]:
         ),
         "helm.drive": _service(
             controls.drive,
+            None,
             f"Move the joystick: metres and degrees a second, for {HOLDS:g} s at most; a newer one"
             " takes over. With numbers that count up, a late one does not overtake.",
             {"linear": SPEED.schema, "angular": TURN_RATE.schema, "number": number},
@@ -249,15 +275,17 @@ def _services(controls: Controls) -> dict[str, Service]:
             lane="wait",
         ),
         "helm.release": _service(
-            controls.release, "Let go of the joystick: the robot stands.", {"number": number}
+            controls.release, None, "Let go of the joystick: the robot stands.", {"number": number}
         ),
         "helm.body": _service(
             controls.body,
+            dict[str, Any],
             "What this robot can do, where it can go, and how it is just now.",
             observes=True,
         ),
         "helm.log": _service(
             controls.log,
+            list[LogLine],
             "The last lines of the log: level, message, time.",
             {"lines": {"type": "integer", "minimum": 1, "maximum": LINES_KEPT}},
             observes=True,
@@ -267,6 +295,7 @@ def _services(controls: Controls) -> dict[str, Service]:
 
 def _service(
     handler: Callable[[dict[str, Any], Context], Any],
+    result: Any,
     doc: str,
     properties: dict[str, Any] | None = None,
     required: str = "",
@@ -274,7 +303,7 @@ def _service(
     lane: Lane = "control",
 ) -> Service:
     parameters = an_object(properties or {}, required)
-    return Service(handler, parameters, doc, observes=observes, lane=lane)
+    return Service(handler, parameters, doc, schema_of(result), observes=observes, lane=lane)
 
 
 def _by_stick(line: Event) -> bool:

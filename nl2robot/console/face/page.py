@@ -11,7 +11,7 @@ import threading
 from collections.abc import Mapping
 from pathlib import Path
 from string import Template
-from typing import Any, Final
+from typing import Any, Final, TypedDict
 
 import msgspec
 from starlette.requests import Request
@@ -26,8 +26,9 @@ from nl2robot.console.face.tablet import FaceTablet
 from nl2robot.console.face.visitor_language import VisitorLanguage
 from nl2robot.console.visitor import LANGUAGES, texts, visitor_of
 from nl2robot.run.runlog import LogError
+from nl2robot.run.state import Phase
 from nl2robot.station.part import Backstage, Part
-from nl2robot.wire import an_object
+from nl2robot.wire import an_object, schema_of
 from robot_api.driver import Event, StopFlag
 from robot_api.drivers import ComposedDriver
 from robot_api.errors import NotPossible
@@ -63,6 +64,29 @@ HEADERS: Final = {
     "X-Content-Type-Options": "nosniff",
     "Cache-Control": "no-store",
 }
+
+
+class FaceState(TypedDict):
+    """What a face shows, as the event `face` says."""
+
+    version: int
+    language: str
+    chosen: bool
+    emotion: str
+    mood: str | None
+    screen: dict[str, Any]
+    asking: dict[str, Any] | None
+    speech: dict[str, Any] | None
+    robot: Phase
+    stopped: int | None
+    unconfirmed: bool
+    lost: float | None
+
+
+class FaceHere(FaceState):
+    """The same, and the face's own name."""
+
+    name: str
 
 
 class Face:
@@ -217,12 +241,14 @@ def _services(
             an_object({}, ""),
             "Tell what the robot's face shows.",
             right="know",
+            result=schema_of(FaceState),
         ),
         "face.here": Service(
             here,
             an_object({"visible": {"type": "boolean"}}, "visible"),
             "Be a face of the robot: people may touch it. Tells what to show, and its own name.",
             right="face",
+            result=schema_of(FaceHere),
         ),
         "face.touch": Service(
             touched,
@@ -235,6 +261,7 @@ def _services(
             ),
             "Answer what is asked on the screen; the result says whether nobody was faster.",
             right="face",
+            result=schema_of(bool),
         ),
         "face.stand_in": Service(
             lambda p, context: _stood_in(backstage, tablet, p, context),
@@ -249,6 +276,7 @@ def _services(
             ),
             "Answer, from the desk, for whoever is asked and is silent or not there; the run's log"
             " says so, with `who`. The result says whether nobody was faster.",
+            result=schema_of(bool),
         ),
         "face.page": Service(
             told,
@@ -257,24 +285,28 @@ def _services(
             ),
             "Tell what people have made of the page of HTML that is shown.",
             right="face",
+            result=schema_of(None),
         ),
         "face.did": Service(
             lambda p, context: tablet.did(context.connection, p["number"], p["html"]),
             an_object({"number": number, "html": html}, "number html"),
             'Tell how the page is after a "face.act"; null if it could not be done.',
             right="face",
+            result=schema_of(None),
         ),
         "face.used": Service(
             lambda p, context: forgetting.noticed(),
             an_object({}, ""),
             "Tell that somebody touches the web page that is shown, which tells nothing itself.",
             right="face",
+            result=schema_of(None),
         ),
         "face.language": Service(
             language,
             an_object({"code": {"enum": list(LANGUAGES)}}, "code"),
             "Let the robot speak and hear this language from now on.",
             right="face",
+            result=schema_of(None),
         ),
         "face.site": Service(
             lambda p, context: _shows_in_frames(face.state["screen"].get("url")),
@@ -282,6 +314,7 @@ def _services(
             "Tell whether the web page at the address that is shown lets itself be shown here:"
             " yes, refuses or away.",
             right="know",
+            result=schema_of(Answer),
         ),
     }
 

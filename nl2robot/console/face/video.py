@@ -20,7 +20,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
-from nl2robot.wire import an_object
+from nl2robot.wire import an_object, schema_of
 from robot_api.driver import StopFlag
 from robot_api.errors import NotPossible, TimedOut
 from robot_api.server import Context, Publish, Service
@@ -134,17 +134,20 @@ class Calls:
                 an_object({"side": {"enum": ["face", "operator"]}}, "side"),
                 "Let this page be rung up, as the robot's face or as an operator's.",
                 right="face",
+                result=schema_of(None),
             ),
             "call.start": Service(
                 lambda p, context: self._start(context.connection, p["who"]),
                 an_object({"who": {"type": "string", "minLength": 1, "maxLength": 200}}, "who"),
                 "Call the robot: its faces ring.",
+                result=schema_of(int),
             ),
             "call.answer": Service(
                 lambda p, context: self._answer(context.connection, p["call"]),
                 an_object({"call": number}, "call"),
                 "Take the call that rings here; the result says whether it still rang.",
                 right="face",
+                result=schema_of(bool),
             ),
             "call.resume": Service(
                 lambda p, context: self._came_back(context.connection, p["call"], p["key"]),
@@ -153,6 +156,7 @@ class Calls:
                 ),
                 "Go on with a call that another page of this browser was in; the result says"
                 " whether it still is.",
+                result=schema_of(bool),
             ),
             "call.end": Service(
                 self._left_off,
@@ -161,12 +165,14 @@ class Calls:
                 ),
                 "End the call, or decline the one that rings here.",
                 right="face",
+                result=schema_of(None),
             ),
             "call.signal": Service(
                 self._passed_on,
                 an_object({"call": number, "signal": {"type": "object"}}, "call signal"),
                 "Tell the other side's WebRTC connection something.",
                 right="face",
+                result=schema_of(None),
             ),
         }
 

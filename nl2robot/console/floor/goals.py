@@ -75,6 +75,7 @@ def part(backstage: Backstage) -> Part:
                     "language": {"enum": list(LANGUAGES)},
                 },
                 "x y",
+                result=Aimed,
             )
         }
     )

@@ -15,7 +15,7 @@ import time
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, TypedDict
 
 from nl2robot.errors import UserError
 from nl2robot.station.part import Backstage, Part
@@ -28,6 +28,27 @@ from robot_api.values import Location
 CORRECTIONS_KEPT: Final = 20
 LOCALISED: Final = "localised"
 """What parts are told when somebody has corrected the robot's place: who, before, after."""
+
+
+class Pose(TypedDict):
+    """Metres, and degrees."""
+
+    x: float
+    y: float
+    theta: float
+    place: str | None
+
+
+class Corrected(TypedDict):
+    """A correction, as it is told on the wire."""
+
+    number: int
+    when: float
+    who: str
+    before: Pose
+    after: Pose
+    undoes: int | None
+    undoable: bool
 
 
 @dataclass(frozen=True)
@@ -90,6 +111,7 @@ def part(backstage: Backstage) -> Part:
                     "who": who,
                     "place": {"type": "string", "maxLength": 1000},
                 },
+                result=list[Corrected],
             ),
             "location.history": service_of_call(
                 lambda p, context: corrections.history(),
@@ -97,6 +119,7 @@ def part(backstage: Backstage) -> Part:
                 " the epoch), who, before and after (x, y, theta, place), the correction that it"
                 " undoes or null, and whether it can be undone.",
                 observes=True,
+                result=list[Corrected],
             ),
             "location.undo": service_of_call(
                 corrections.undo,
@@ -104,6 +127,7 @@ def part(backstage: Backstage) -> Part:
                 " history. That can be undone as well.",
                 {"correction": {"type": "integer"}, "who": who},
                 "correction",
+                result=list[Corrected],
             ),
         },
         events={"location": "history, as location.history tells it, whenever it was corrected"},

@@ -12,7 +12,7 @@ import threading
 from collections.abc import Collection, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NotRequired, TypedDict
 
 import msgspec
 
@@ -48,6 +48,33 @@ _ALIASES = {
 }
 
 
+class PlaceShown(TypedDict):
+    """A place as the map shows it: `pose` is x, y (metres) and the way to face (degrees)."""
+
+    name: str
+    names: dict[str, str]
+    kind: str
+    pose: list[float] | None
+    area: list[list[float]] | None
+    part: bool
+    removable: bool
+    aliases: NotRequired[dict[str, list[str]]]
+
+
+class PlacesNow(TypedDict):
+    """All places, and by how many metres the one that was named was put aside."""
+
+    places: list[PlaceShown]
+    moved: float
+
+
+class File(TypedDict):
+    """A file to keep, by its name."""
+
+    file: str
+    text: str
+
+
 def part(backstage: Backstage) -> Part:
     """The places on the wire; those that are kept are known from now on."""
     naming = Naming(backstage)
@@ -58,6 +85,7 @@ def part(backstage: Backstage) -> Part:
                 "List the places as the map shows them, each with whether it was named by hand:"
                 " then it is removable, and has its aliases.",
                 observes=True,
+                result=list[PlaceShown],
             ),
             "places.set": service(
                 naming.set,
@@ -73,17 +101,20 @@ def part(backstage: Backstage) -> Part:
                     "theta": _NUMBER,
                 },
                 "name x y",
+                result=PlacesNow,
             ),
             "places.remove": service(
                 naming.remove,
                 "Remove a place that was named by hand; returns the places as places.set does.",
                 {"name": _NAME},
                 "name",
+                result=PlacesNow,
             ),
             "places.export": service(
                 lambda p: naming.exported(),
                 "Give the world's file with the places and zones in it that were drawn by hand.",
                 observes=True,
+                result=File,
             ),
         },
         events={"places": "places, as places.list tells them, whenever one was named or removed"},

@@ -54,6 +54,7 @@ def part(backstage: Backstage) -> Part:
                 " map's texts.",
                 {"language": {"enum": list(LANGUAGES)}},
                 observes=True,
+                result=dict[str, Any],
             )
         },
         events=EVENTS,

@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, TypedDict
 
 import msgspec
 
@@ -44,6 +44,26 @@ _POLYGON = {
     "items": {"type": "array", "items": _NUMBER, "minItems": 2, "maxItems": 2},
     "maxItems": LONGEST_OUTLINE,
 }
+
+
+class ZoneShown(TypedDict):
+    """A zone, its corners in metres."""
+
+    name: str
+    polygon: list[list[float]]
+    removable: bool
+
+
+class Changed(TypedDict):
+    """A change, as it is told on the wire."""
+
+    number: int
+    when: float
+    who: str
+    what: Literal["drawn", "changed", "removed"]
+    name: str
+    undoes: int | None
+    undoable: bool
 
 
 class Change(msgspec.Struct, frozen=True):
@@ -85,6 +105,7 @@ def part(backstage: Backstage) -> Part:
                 lambda p: zones.listed(),
                 "List the keep-out zones: name, polygon, and whether it can be removed.",
                 observes=True,
+                result=list[ZoneShown],
             ),
             "zones.set": service(
                 zones.set,
@@ -92,12 +113,14 @@ def part(backstage: Backstage) -> Part:
                 " `who` does it, for the history.",
                 {"name": _NAME, "polygon": _POLYGON, "who": _WHO},
                 "name polygon",
+                result=list[ZoneShown],
             ),
             "zones.remove": service(
                 zones.remove,
                 "Remove a keep-out zone that was drawn; returns the zones as zones.list does.",
                 {"name": _NAME, "who": _WHO},
                 "name",
+                result=list[ZoneShown],
             ),
             "zones.history": service(
                 lambda p: zones.history(),
@@ -105,6 +128,7 @@ def part(backstage: Backstage) -> Part:
                 " since the epoch), who, what (drawn | changed | removed), name, the change that it"
                 " undoes or null, and whether it can be undone.",
                 observes=True,
+                result=list[Changed],
             ),
             "zones.undo": service(
                 zones.undo,
@@ -112,6 +136,7 @@ def part(backstage: Backstage) -> Part:
                 " can be undone as well.",
                 {"change": {"type": "integer"}, "who": _WHO},
                 "change",
+                result=list[ZoneShown],
             ),
         },
         events={

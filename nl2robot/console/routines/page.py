@@ -14,7 +14,7 @@ import itertools
 from collections import OrderedDict
 from collections.abc import Mapping
 from datetime import datetime
-from typing import Any, Final
+from typing import Any, Final, NotRequired, TypedDict
 
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -22,10 +22,11 @@ from starlette.responses import HTMLResponse, PlainTextResponse, Response
 from starlette.routing import Route
 
 from nl2robot.console import slow_pages
+from nl2robot.console.desk.outlook import Outcome
 from nl2robot.console.frame import frame
 from nl2robot.console.rendering import rendered
 from nl2robot.console.routines import view as routine_view
-from nl2robot.console.routines.view import Body, Card, Viewer
+from nl2robot.console.routines.view import Body, Card, Shown, Viewer
 from nl2robot.console.visitor import LANGUAGES, LONGEST_NAME, texts, visitor_of
 from nl2robot.errors import UserError
 from nl2robot.run.archive import Archive
@@ -52,6 +53,72 @@ _BODY: Final = {
     "sentence": {"type": "string", "maxLength": MAX_TEXT},
     "program": {"type": "string", "maxLength": MAX_PROGRAM},
 }
+
+
+class Tried(TypedDict):
+    """What a sentence or a program would do; `name`: why it can have no such name."""
+
+    works: bool
+    does: str
+    steps: list[tuple[int, str]]
+    written: str
+    name: str | None
+
+
+class Tested(Outcome):
+    """A dry run; `picture` is an SVG of its way."""
+
+    picture: str | None
+
+
+class Renamed(TypedDict):
+    """`used_by`: the names of the routines that need it, with commas between; maybe empty."""
+
+    name: str
+    used_by: str
+
+
+class Removed(TypedDict):
+    """`number`: with which it can be restored."""
+
+    number: int
+    used_by: str
+
+
+class File(TypedDict):
+    """A file to keep, by its name."""
+
+    file: str
+    text: str
+
+
+class Found(TypedDict):
+    """A routine of a file, and how it stands to those that are known."""
+
+    name: str
+    language: str
+    sentence: str
+    line: int
+    state: routine_files.State
+    why: str
+    works: bool
+    does: str
+    steps: list[tuple[int, str]]
+    written: str
+
+
+class Kept(TypedDict):
+    """A routine that was taken over."""
+
+    name: str
+    language: str
+
+
+class Imported(TypedDict):
+    """What is in a file, or what of it was taken over."""
+
+    found: NotRequired[list[Found]]
+    kept: NotRequired[list[Kept]]
 
 
 def part(backstage: Backstage) -> Part:
@@ -159,6 +226,7 @@ class Shelf:
                 "List the routines: what each does, who taught it, how often it was run.",
                 {"reader": _READER},
                 observes=True,
+                result=list[Shown],
             ),
             "routines.show": service(
                 lambda p: routine_view.as_data(self._viewer.card(self._known(p), _reader(p))),
@@ -166,60 +234,70 @@ class Shelf:
                 one,
                 "name language",
                 observes=True,
+                result=Shown,
             ),
             "routines.check": service(
                 self.check,
                 "Tell what a sentence or a program would do as a routine; keeps nothing.",
                 {**one, **_BODY},
                 "language",
+                result=Tried,
             ),
             "routines.test": service(
                 self.test,
                 "Try a routine in a copy of the simulated world, with its picture; moves nothing.",
                 {**one},
                 "name language",
+                result=Tested,
             ),
             "routines.keep": service(
                 self.keep,
                 "Keep a sentence or a program under a name that can be said.",
                 {**one, **_BODY, "by": _BY},
                 "name language",
+                result=Shown,
             ),
             "routines.change": service(
                 self.change,
                 "Let a routine do something else from now on.",
                 {**one, **_BODY, "by": _BY},
                 "name language",
+                result=Shown,
             ),
             "routines.rename": service(
                 self.rename,
                 "Call a routine otherwise.",
                 {**one, "new": _NAME},
                 "name language new",
+                result=Renamed,
             ),
             "routines.accept": service(
                 self.accept,
                 "Let an imported routine be used, whose body with this SHA-256 was reviewed.",
                 {**one, "sha256": {"type": "string", "pattern": "^[0-9a-f]{64}$"}, "by": _BY},
                 "name language sha256",
+                result=Shown,
             ),
             "routines.remove": service(
                 self.remove,
                 "Forget a routine; returns a number with which it can be restored.",
                 {**one},
                 "name language",
+                result=Removed,
             ),
             "routines.restore": service(
                 self.restore,
                 "Undo a removal.",
                 {"number": {"type": "integer", "minimum": 1}},
                 "number",
+                result=None,
             ),
             "routines.export": service(
                 self.export,
                 "Give routines as a file: those that are named, or all.",
                 {"which": {"type": "array", "items": which, "maxItems": routine_files.MOST}},
                 observes=True,
+                result=File,
             ),
             "routines.import": service(
                 self.take_over,
@@ -232,6 +310,7 @@ class Shelf:
                     "keep": {"type": "array", "items": choice, "maxItems": routine_files.MOST},
                 },
                 "text",
+                result=Imported,
             ),
         }
 

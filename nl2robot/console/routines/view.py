@@ -7,7 +7,7 @@ import hashlib
 from dataclasses import dataclass
 from datetime import datetime
 from functools import lru_cache
-from typing import Any, Final
+from typing import Any, Final, TypedDict
 
 from markupsafe import Markup
 
@@ -32,6 +32,29 @@ from nl2robot.translate.teaching import Teacher
 from sim.world.model import World
 
 CARDS_KNOWN: Final = 500
+
+
+class Shown(TypedDict):
+    """A routine for the wire; `steps` are depth and text, times ISO 8601, local."""
+
+    name: str
+    language: str
+    sentence: str
+    program: str
+    sha256: str
+    works: bool
+    does: str
+    steps: list[tuple[int, str]]
+    written: str
+    learned: str
+    by: str
+    changed: str
+    changed_by: str
+    formerly: list[str]
+    imported: str
+    reviewed: bool
+    reviewed_by: str
+    runs: int | None
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, TypedDict
 
 from starlette.requests import Request
 
@@ -28,7 +28,7 @@ from nl2robot.console.runs import view as runs_view
 from nl2robot.console.runs.asked import PROPERTIES, Asked, BadDay, asked
 from nl2robot.console.visitor import texts, visitor_of
 from nl2robot.errors import UserError
-from nl2robot.run.archive import Archive
+from nl2robot.run.archive import Archive, State
 from nl2robot.run.kept_record import Recorder
 from nl2robot.station.part import Backstage, Part
 from nl2robot.wire import service
@@ -45,6 +45,35 @@ _FOR_SCRIPTS = (
     *("play", "pause", "says", "hears", "shows", "feels", "gestures"),
     *("replay_failed", "shortened", "stale"),
 )
+
+
+class Row(TypedDict):
+    """`nl2robot.run.archive.Brief`, with its state."""
+
+    id: int
+    started: float
+    finished: float | None
+    heard: str | None
+    utterance: str | None
+    program: str
+    approved_by: str
+    proposed: str | None
+    changed_by: str | None
+    world: str | None
+    robot: str | None
+    status: str | None
+    message: str | None
+    process: int | None
+    calls: int
+    state: State
+
+
+class Listed(TypedDict):
+    """Some runs; `found`: how many there are in all, `more`: whether there are older ones."""
+
+    runs: list[Row]
+    found: int
+    more: bool
 
 
 def part(backstage: Backstage) -> Part:
@@ -143,19 +172,25 @@ def _services(backstage: Backstage, archive: Archive) -> dict[str, Service]:
         return log.whole(run)
 
     def looking(
-        handler: Callable[[Mapping[str, Any]], Any], doc: str, properties: Any, required: str = ""
+        handler: Callable[[Mapping[str, Any]], Any],
+        result: Any,
+        doc: str,
+        properties: Any,
+        required: str = "",
     ) -> Service:
-        return service(handler, doc, dict(properties), required, observes=True)
+        return service(handler, doc, dict(properties), required, observes=True, result=result)
 
     return {
         "runs.list": looking(
             listed,
+            Listed,
             "List past runs, newest first: those with all these words, in this state, of these"
             " days (2026-11-24), older than the run `before`.",
             PROPERTIES,
         ),
         "runs.show": looking(
             shown,
+            dict[str, Any],
             "Everything that is logged of a run.",
             {"run": {"type": "integer", "minimum": 1}},
             "run",

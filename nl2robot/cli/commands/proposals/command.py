@@ -43,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     trust(options)
     terminal = Terminal(language=options.lang)
+    terminal.nobody = "nobody_decides"
     with client_of(options.robot, options.token) as robot:
         operator = Operator(robot, user_name())
         if options.json:
@@ -81,7 +82,7 @@ def _list(terminal: Terminal, waiting: list[Proposal]) -> None:
 def _coming(operator: Operator, terminal: Terminal) -> Iterator[Proposal]:
     """Those that wait, and each that comes from now on."""
     if not sys.stdin.isatty():
-        raise UserError(terminal.words["nobody_there"], ExitStatus.NOT_APPROVED)
+        raise UserError(terminal.words[terminal.nobody], ExitStatus.NOT_APPROVED)
     told: queue.SimpleQueue[int] = queue.SimpleQueue()
 
     def note(kind: str, data: Mapping[str, Any]) -> None:

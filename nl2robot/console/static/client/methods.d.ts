@@ -491,7 +491,9 @@ export interface Methods {
     /** Return this document. */
     discover: {
       params: Record<string, never>;
-      result: {};
+      result: {
+        [k: string]: unknown;
+      };
     };
     /** Stop the call in flight that has this id; true if there was one. */
     cancel: {
@@ -530,14 +532,14 @@ export interface Methods {
         interrupts?: boolean;
         held?: boolean;
       };
-      result: unknown;
+      result: number;
     };
     /** Load what hears a language: somebody is about to speak. */
     ready: {
       params: {
         language?: string;
       };
-      result: unknown;
+      result: null;
     };
     /**
      * Hand over a block of sound (base64 of 16-bit samples); returns what happened: began, partial, heard with its program (where that takes a while: thinking, and in a later answer heard or given up), too long, and of a held microphone stop. To call robot.stop then is the client's.
@@ -547,14 +549,230 @@ export interface Methods {
         microphone: number;
         sound: string;
       };
-      result: unknown;
+      /**
+       * Items: What there was to tell of a microphone; `translation` is what was heard as a program.
+       */
+      result: {
+        doubtful?: boolean;
+        perhaps?: string | null;
+        stop?: boolean;
+        text?: string;
+        /** What became of an utterance; `to_json` gives the object of `translate --json`. */
+        translation?: {
+          utterance: string;
+          status: 'clarify' | 'ok' | 'rejected';
+          program: string | null;
+          plan: {
+            [k: string]: unknown;
+          } | null;
+          source: string | null;
+          confidence: number;
+          explanation: string;
+          message: string | null;
+          suggestions: string[];
+          ms: number;
+          unused?: string[];
+          own?: string[];
+          request?: {
+            kind:
+              | 'appointments'
+              | 'cancel'
+              | 'change'
+              | 'counted'
+              | 'doing'
+              | 'done'
+              | 'explain'
+              | 'forget'
+              | 'found'
+              | 'happened'
+              | 'help'
+              | 'how many said'
+              | 'learn'
+              | 'list'
+              | 'pace'
+              | 'planned'
+              | 'rename'
+              | 'said'
+              | 'schedule'
+              | 'skip'
+              | 'undo'
+              | 'unschedule'
+              | 'who said'
+              | 'why';
+            name?: string;
+            new?: string;
+            sentence?: string;
+            part?: string;
+            when?: {
+              times?: string[];
+              bare?: string[];
+              half?: ('am' | 'night' | 'pm') | null;
+              weekdays?: number[];
+              days_ahead?: number | null;
+              date?: string | null;
+              minutes?: number | null;
+              repeats?: boolean;
+              count?: number | null;
+              since?: string | null;
+              until?: string | null;
+            } | null;
+            happening?: {
+              what: 'battery' | 'heard' | 'place' | 'pressed' | 'scanned' | 'seen';
+              text?: string;
+              thing?: string;
+              place?: string;
+              below?: number;
+              rate?: number | null;
+              once?: boolean;
+              named?: boolean;
+            } | null;
+          } | null;
+          schedule?: {
+            rhythm?: {
+              begins: string;
+              zone: string;
+              rule?: string | null;
+            } | null;
+            trigger?: {
+              what: 'battery' | 'heard' | 'message' | 'place' | 'pressed' | 'scanned' | 'seen';
+              text?: string;
+              thing?: string;
+              place?: string;
+              topic?: string;
+              below?: number;
+              every?: number;
+            } | null;
+            when: string;
+            sentence: string;
+            program: string;
+            plan: {
+              [k: string]: unknown;
+            } | null;
+            source: string | null;
+            confidence: number;
+            explanation: string;
+            unused?: string[];
+            own?: string[];
+          } | null;
+        };
+        what:
+          'began' | 'given up' | 'heard' | 'nothing' | 'partial' | 'stop' | 'thinking' | 'too long';
+      }[];
     };
     /** End listening; returns what was still to be told, once it is thought about. */
     close: {
       params: {
         microphone: number;
       };
-      result: unknown;
+      /**
+       * Items: What there was to tell of a microphone; `translation` is what was heard as a program.
+       */
+      result: {
+        doubtful?: boolean;
+        perhaps?: string | null;
+        stop?: boolean;
+        text?: string;
+        /** What became of an utterance; `to_json` gives the object of `translate --json`. */
+        translation?: {
+          utterance: string;
+          status: 'clarify' | 'ok' | 'rejected';
+          program: string | null;
+          plan: {
+            [k: string]: unknown;
+          } | null;
+          source: string | null;
+          confidence: number;
+          explanation: string;
+          message: string | null;
+          suggestions: string[];
+          ms: number;
+          unused?: string[];
+          own?: string[];
+          request?: {
+            kind:
+              | 'appointments'
+              | 'cancel'
+              | 'change'
+              | 'counted'
+              | 'doing'
+              | 'done'
+              | 'explain'
+              | 'forget'
+              | 'found'
+              | 'happened'
+              | 'help'
+              | 'how many said'
+              | 'learn'
+              | 'list'
+              | 'pace'
+              | 'planned'
+              | 'rename'
+              | 'said'
+              | 'schedule'
+              | 'skip'
+              | 'undo'
+              | 'unschedule'
+              | 'who said'
+              | 'why';
+            name?: string;
+            new?: string;
+            sentence?: string;
+            part?: string;
+            when?: {
+              times?: string[];
+              bare?: string[];
+              half?: ('am' | 'night' | 'pm') | null;
+              weekdays?: number[];
+              days_ahead?: number | null;
+              date?: string | null;
+              minutes?: number | null;
+              repeats?: boolean;
+              count?: number | null;
+              since?: string | null;
+              until?: string | null;
+            } | null;
+            happening?: {
+              what: 'battery' | 'heard' | 'place' | 'pressed' | 'scanned' | 'seen';
+              text?: string;
+              thing?: string;
+              place?: string;
+              below?: number;
+              rate?: number | null;
+              once?: boolean;
+              named?: boolean;
+            } | null;
+          } | null;
+          schedule?: {
+            rhythm?: {
+              begins: string;
+              zone: string;
+              rule?: string | null;
+            } | null;
+            trigger?: {
+              what: 'battery' | 'heard' | 'message' | 'place' | 'pressed' | 'scanned' | 'seen';
+              text?: string;
+              thing?: string;
+              place?: string;
+              topic?: string;
+              below?: number;
+              every?: number;
+            } | null;
+            when: string;
+            sentence: string;
+            program: string;
+            plan: {
+              [k: string]: unknown;
+            } | null;
+            source: string | null;
+            confidence: number;
+            explanation: string;
+            unused?: string[];
+            own?: string[];
+          } | null;
+        };
+        what:
+          'began' | 'given up' | 'heard' | 'nothing' | 'partial' | 'stop' | 'thinking' | 'too long';
+      }[];
     };
     /** Listen for the hot word at a client's microphone; returns a number. */
     attend: {
@@ -562,7 +780,7 @@ export interface Methods {
         rate: number;
         language?: string;
       };
-      result: unknown;
+      result: number;
     };
     /**
      * Hand over a block of sound (base64 of 16-bit samples); returns what was heard in it: what (hotword | stop), and the time in seconds of sound. To call robot.stop is the client's.
@@ -572,14 +790,18 @@ export interface Methods {
         attention: number;
         sound: string;
       };
-      result: unknown;
+      /** Items: A word that was heard; `time` is in seconds of sound. */
+      result: {
+        time: number;
+        what: 'hotword' | 'stop';
+      }[];
     };
     /** Listen for the hot word no more. */
     ignore: {
       params: {
         attention: number;
       };
-      result: unknown;
+      result: null;
     };
   };
   program: {
@@ -598,7 +820,9 @@ export interface Methods {
         utterance: string;
         status: 'clarify' | 'ok' | 'rejected';
         program: string | null;
-        plan: {} | null;
+        plan: {
+          [k: string]: unknown;
+        } | null;
         source: string | null;
         confidence: number;
         explanation: string;
@@ -679,7 +903,9 @@ export interface Methods {
           when: string;
           sentence: string;
           program: string;
-          plan: {} | null;
+          plan: {
+            [k: string]: unknown;
+          } | null;
           source: string | null;
           confidence: number;
           explanation: string;
@@ -768,7 +994,46 @@ export interface Methods {
         run?: number;
         language?: string;
       };
-      result: unknown;
+      result: {
+        again: {
+          method: string;
+          arguments: {
+            [k: string]: unknown;
+          };
+          line: number;
+          result?: {
+            [k: string]: unknown;
+          };
+          error?: string | null;
+          left?: {
+            [k: string]: unknown;
+          } | null;
+        } | null;
+        /** Items: A robot call that came back, as the program made it. */
+        done: {
+          method: string;
+          arguments: {
+            [k: string]: unknown;
+          };
+          line: number;
+          result?: {
+            [k: string]: unknown;
+          };
+          error?: string | null;
+          left?: {
+            [k: string]: unknown;
+          } | null;
+        }[];
+        line: number;
+        program: string;
+        run: number;
+        sha256: string;
+        stood: {
+          [k: string]: number;
+        } | null;
+        told: string[];
+        utterance: string | null;
+      } | null;
     };
     /** Tell that a program lies before somebody here who decides on it, or no longer. */
     reviewing: {
@@ -967,7 +1232,28 @@ export interface Methods {
     /** Tell how the robot and its program stand, as the event `state` does. */
     state: {
       params: Record<string, never>;
-      result: unknown;
+      /** The fields of a `State` that others are told. */
+      result: {
+        because: string | null;
+        charging: boolean;
+        driven_by: string | null;
+        line: number | null;
+        lost_since: number | null;
+        run: number | null;
+        sequence: number;
+        since: number;
+        state:
+          | 'charging'
+          | 'idle'
+          | 'lost'
+          | 'paused'
+          | 'pausing'
+          | 'reviewing'
+          | 'running'
+          | 'stopped'
+          | 'stopping';
+        unconfirmed: boolean;
+      };
     };
   };
   schedule: {
@@ -1427,10 +1713,13 @@ export interface Methods {
             | 'reminder_no'
             | 'reminder_silent'
             | 'reminder_unclear'
+            | 'trouble'
             | 'waits';
           appointment: number;
           occurrence: number | null;
-          parts: {};
+          parts: {
+            [k: string]: unknown;
+          };
         };
         told: string;
       }[];
@@ -1696,7 +1985,69 @@ export interface Methods {
      */
     list: {
       params: Record<string, never>;
-      result: unknown;
+      /**
+       * The robots of the fleet, and what this one has given them to do, the newest first.
+       */
+      result: {
+        /**
+         * Items: Something that this robot's dispatcher has to have done once, by some robot.
+         */
+        errands: {
+          id: string;
+          program: string;
+          sha256: string;
+          sentence: string;
+          language: string;
+          by: string;
+          reviewed: string;
+          at: number;
+          wanted?: string | null;
+          state?: string;
+          offer?: string | null;
+          robot?: string | null;
+          robot_name?: string | null;
+          run?: number | null;
+          message?: string | null;
+          refused?: {
+            [k: string]: string;
+          };
+        }[];
+        /**
+         * Items: A robot of the fleet as this one has heard of it; `heard`: seconds ago by the clock here.
+         */
+        members: {
+          about: {
+            name: string;
+            kind: string;
+            methods: string[];
+            world: string;
+            map: string;
+            version: string;
+          } | null;
+          heard: number;
+          here: boolean;
+          id: string;
+          known: boolean;
+          left: boolean;
+          name: string;
+          same_map: boolean;
+          standing: {
+            state: string;
+            x?: number | null;
+            y?: number | null;
+            theta?: number | null;
+            place?: string | null;
+            battery?: number | null;
+            charging?: boolean;
+            run?: number | null;
+            because?: string | null;
+            driven_by?: string | null;
+            zones?: string;
+            waits?: string | null;
+          } | null;
+          twin: boolean;
+        }[];
+      };
     };
     /**
      * Approve exactly the program with this SHA-256, for one run by the robot of the fleet that does it best, or by the `robot` of that name or id. That robot reviews it again before it begins. Returns what is to be done, which `fleet.wait` waits for.
@@ -1816,14 +2167,58 @@ export interface Methods {
         language?: string;
         at?: string;
       };
-      result: unknown;
+      /** A review as the desk tells it; `reading` is line, depth, text. */
+      result: {
+        acceptable: boolean;
+        came_through: boolean;
+        facts: never[][];
+        good: boolean;
+        /** Items: Something to know of a line. */
+        marks: {
+          line: number;
+          text: string;
+          weight: 'error' | 'note' | 'risk';
+        }[];
+        outcome: string;
+        reading: never[][];
+        sha256: string;
+      };
     };
     /** Tell how the present or last run stands, with its program and calls. */
     run: {
       params: {
         language?: string;
       };
-      result: unknown;
+      result: {
+        by: string | null;
+        /** Items: A call of a run. */
+        calls: {
+          arguments: {
+            [k: string]: unknown;
+          };
+          error: string | null;
+          line: number;
+          method: string;
+          number: number;
+          result: unknown;
+          seconds: number | null;
+        }[];
+        error: string | null;
+        line: number | null;
+        /** Items: A line of a program: its HTML, and what it says. */
+        lines: {
+          code: string;
+          reading: string;
+        }[];
+        message: string | null;
+        program: string;
+        robot_lost_since: number | null;
+        run: number;
+        sha256: string;
+        started: number | null;
+        state: 'done' | 'failed' | 'limit' | 'paused' | 'pausing' | 'running' | 'stopped';
+        utterance: string | null;
+      } | null;
     };
   };
   scene: {
@@ -1834,14 +2229,21 @@ export interface Methods {
       params: {
         language?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      result: {
+        [k: string]: unknown;
+      };
     };
   };
   zones: {
     /** List the keep-out zones: name, polygon, and whether it can be removed. */
     list: {
       params: Record<string, never>;
-      result: unknown;
+      /** Items: A zone, its corners in metres. */
+      result: {
+        name: string;
+        polygon: number[][];
+        removable: boolean;
+      }[];
     };
     /**
      * Keep the robot out of an area from now on; returns the zones as zones.list does. `who` does it, for the history.
@@ -1853,7 +2255,12 @@ export interface Methods {
         polygon: number[][];
         who?: string;
       };
-      result: unknown;
+      /** Items: A zone, its corners in metres. */
+      result: {
+        name: string;
+        polygon: number[][];
+        removable: boolean;
+      }[];
     };
     /** Remove a keep-out zone that was drawn; returns the zones as zones.list does. */
     remove: {
@@ -1861,14 +2268,28 @@ export interface Methods {
         name: string;
         who?: string;
       };
-      result: unknown;
+      /** Items: A zone, its corners in metres. */
+      result: {
+        name: string;
+        polygon: number[][];
+        removable: boolean;
+      }[];
     };
     /**
      * List the last changes of keep-out zones, the newest first: number, when (seconds since the epoch), who, what (drawn | changed | removed), name, the change that it undoes or null, and whether it can be undone.
      */
     history: {
       params: Record<string, never>;
-      result: unknown;
+      /** Items: A change, as it is told on the wire. */
+      result: {
+        name: string;
+        number: number;
+        undoable: boolean;
+        undoes: number | null;
+        what: 'changed' | 'drawn' | 'removed';
+        when: number;
+        who: string;
+      }[];
     };
     /**
      * Take back the change of that number; returns the zones as zones.list does. That can be undone as well.
@@ -1878,7 +2299,12 @@ export interface Methods {
         change: number;
         who?: string;
       };
-      result: unknown;
+      /** Items: A zone, its corners in metres. */
+      result: {
+        name: string;
+        polygon: number[][];
+        removable: boolean;
+      }[];
     };
   };
   places: {
@@ -1887,7 +2313,23 @@ export interface Methods {
      */
     list: {
       params: Record<string, never>;
-      result: unknown;
+      /**
+       * Items: A place as the map shows it: `pose` is x, y (metres) and the way to face (degrees).
+       */
+      result: {
+        aliases?: {
+          [k: string]: string[];
+        };
+        area: number[][] | null;
+        kind: string;
+        name: string;
+        names: {
+          [k: string]: string;
+        };
+        part: boolean;
+        pose: number[] | null;
+        removable: boolean;
+      }[];
     };
     /**
      * Name a place, or change the one that `was` called so. Returns the places, and by how many metres it was `moved` to where the robot has room and blocks no door.
@@ -1905,19 +2347,63 @@ export interface Methods {
         y: number;
         theta?: number;
       };
-      result: unknown;
+      /** All places, and by how many metres the one that was named was put aside. */
+      result: {
+        moved: number;
+        /**
+         * Items: A place as the map shows it: `pose` is x, y (metres) and the way to face (degrees).
+         */
+        places: {
+          aliases?: {
+            [k: string]: string[];
+          };
+          area: number[][] | null;
+          kind: string;
+          name: string;
+          names: {
+            [k: string]: string;
+          };
+          part: boolean;
+          pose: number[] | null;
+          removable: boolean;
+        }[];
+      };
     };
     /** Remove a place that was named by hand; returns the places as places.set does. */
     remove: {
       params: {
         name: string;
       };
-      result: unknown;
+      /** All places, and by how many metres the one that was named was put aside. */
+      result: {
+        moved: number;
+        /**
+         * Items: A place as the map shows it: `pose` is x, y (metres) and the way to face (degrees).
+         */
+        places: {
+          aliases?: {
+            [k: string]: string[];
+          };
+          area: number[][] | null;
+          kind: string;
+          name: string;
+          names: {
+            [k: string]: string;
+          };
+          part: boolean;
+          pose: number[] | null;
+          removable: boolean;
+        }[];
+      };
     };
     /** Give the world's file with the places and zones in it that were drawn by hand. */
     export: {
       params: Record<string, never>;
-      result: unknown;
+      /** A file to keep, by its name. */
+      result: {
+        file: string;
+        text: string;
+      };
     };
     /**
      * Tell what a spot or a place on the map means as a goal: the nearest spot where the robot has room and blocks no door, by how many metres that was moved, what people call it, and the program that goes there. Moves nothing.
@@ -1929,7 +2415,16 @@ export interface Methods {
         place?: string | null;
         language?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      /** What is meant by a spot on the map. */
+      result: {
+        x: number;
+        y: number;
+        place: string | null;
+        moved: number;
+        program: string;
+        said: string;
+        note: string;
+      };
     };
   };
   location: {
@@ -1944,14 +2439,56 @@ export interface Methods {
         who?: string;
         place?: string;
       };
-      result: unknown;
+      /** Items: A correction, as it is told on the wire. */
+      result: {
+        /** Metres, and degrees. */
+        after: {
+          place: string | null;
+          theta: number;
+          x: number;
+          y: number;
+        };
+        /** Metres, and degrees. */
+        before: {
+          place: string | null;
+          theta: number;
+          x: number;
+          y: number;
+        };
+        number: number;
+        undoable: boolean;
+        undoes: number | null;
+        when: number;
+        who: string;
+      }[];
     };
     /**
      * List who told the robot where it is, the newest first: number, when (seconds since the epoch), who, before and after (x, y, theta, place), the correction that it undoes or null, and whether it can be undone.
      */
     history: {
       params: Record<string, never>;
-      result: unknown;
+      /** Items: A correction, as it is told on the wire. */
+      result: {
+        /** Metres, and degrees. */
+        after: {
+          place: string | null;
+          theta: number;
+          x: number;
+          y: number;
+        };
+        /** Metres, and degrees. */
+        before: {
+          place: string | null;
+          theta: number;
+          x: number;
+          y: number;
+        };
+        number: number;
+        undoable: boolean;
+        undoes: number | null;
+        when: number;
+        who: string;
+      }[];
     };
     /**
      * Take back the last correction, wherever the robot has driven since; returns the history. That can be undone as well.
@@ -1961,33 +2498,98 @@ export interface Methods {
         correction: number;
         who?: string;
       };
-      result: unknown;
+      /** Items: A correction, as it is told on the wire. */
+      result: {
+        /** Metres, and degrees. */
+        after: {
+          place: string | null;
+          theta: number;
+          x: number;
+          y: number;
+        };
+        /** Metres, and degrees. */
+        before: {
+          place: string | null;
+          theta: number;
+          x: number;
+          y: number;
+        };
+        number: number;
+        undoable: boolean;
+        undoes: number | null;
+        when: number;
+        who: string;
+      }[];
     };
   };
   helm: {
     /** Tell who drives, and who asks to. */
     state: {
       params: Record<string, never>;
-      result: unknown;
+      /** Who drives, and which of the connections is the asker's own. */
+      result: {
+        /** Items: Somebody at a console. */
+        asking: {
+          connection: string;
+          who: string;
+        }[];
+        driver: string | null;
+        me: string;
+        since: number | null;
+        who: string | null;
+      };
     };
     /** Drive, if nobody does; else ask whoever does, with the event `helm`. */
     take: {
       params: {
         who: string;
       };
-      result: unknown;
+      /** Who drives, and which of the connections is the asker's own. */
+      result: {
+        /** Items: Somebody at a console. */
+        asking: {
+          connection: string;
+          who: string;
+        }[];
+        driver: string | null;
+        me: string;
+        since: number | null;
+        who: string | null;
+      };
     };
     /** Hand the helm over to a connection that asks; without one, let it go. */
     give: {
       params: {
         to?: string | null;
       };
-      result: unknown;
+      /** Who drives, and which of the connections is the asker's own. */
+      result: {
+        /** Items: Somebody at a console. */
+        asking: {
+          connection: string;
+          who: string;
+        }[];
+        driver: string | null;
+        me: string;
+        since: number | null;
+        who: string | null;
+      };
     };
     /** Tell those who ask that you go on driving. */
     keep: {
       params: Record<string, never>;
-      result: unknown;
+      /** Who drives, and which of the connections is the asker's own. */
+      result: {
+        /** Items: Somebody at a console. */
+        asking: {
+          connection: string;
+          who: string;
+        }[];
+        driver: string | null;
+        me: string;
+        since: number | null;
+        who: string | null;
+      };
     };
     /**
      * A robot method, by name, with its arguments, from whoever drives; returns its result. Ends with the connection. `stop` may be called by every operator.
@@ -1995,7 +2597,9 @@ export interface Methods {
     call: {
       params: {
         name: string;
-        arguments?: {};
+        arguments?: {
+          [k: string]: unknown;
+        };
       };
       result: unknown;
     };
@@ -2008,33 +2612,69 @@ export interface Methods {
         angular: number;
         number?: number;
       };
-      result: unknown;
+      result: null;
     };
     /** Let go of the joystick: the robot stands. */
     release: {
       params: {
         number?: number;
       };
-      result: unknown;
+      result: null;
     };
     /** What this robot can do, where it can go, and how it is just now. */
     body: {
       params: Record<string, never>;
-      result: unknown;
+      result: {
+        [k: string]: unknown;
+      };
     };
     /** The last lines of the log: level, message, time. */
     log: {
       params: {
         lines?: number;
       };
-      result: unknown;
+      /** Items: `time` is the local one, as 14:05:00. */
+      result: {
+        level: string;
+        message: string;
+        time: string;
+      }[];
     };
   };
   face: {
     /** Tell what the robot's face shows. */
     state: {
       params: Record<string, never>;
-      result: unknown;
+      /** What a face shows, as the event `face` says. */
+      result: {
+        asking: {
+          [k: string]: unknown;
+        } | null;
+        chosen: boolean;
+        emotion: string;
+        language: string;
+        lost: number | null;
+        mood: string | null;
+        robot:
+          | 'charging'
+          | 'idle'
+          | 'lost'
+          | 'paused'
+          | 'pausing'
+          | 'reviewing'
+          | 'running'
+          | 'stopped'
+          | 'stopping';
+        screen: {
+          [k: string]: unknown;
+        };
+        speech: {
+          [k: string]: unknown;
+        } | null;
+        stopped: number | null;
+        unconfirmed: boolean;
+        version: number;
+      };
     };
     /**
      * Be a face of the robot: people may touch it. Tells what to show, and its own name.
@@ -2043,7 +2683,37 @@ export interface Methods {
       params: {
         visible: boolean;
       };
-      result: unknown;
+      /** The same, and the face's own name. */
+      result: {
+        asking: {
+          [k: string]: unknown;
+        } | null;
+        chosen: boolean;
+        emotion: string;
+        language: string;
+        lost: number | null;
+        mood: string | null;
+        name: string;
+        robot:
+          | 'charging'
+          | 'idle'
+          | 'lost'
+          | 'paused'
+          | 'pausing'
+          | 'reviewing'
+          | 'running'
+          | 'stopped'
+          | 'stopping';
+        screen: {
+          [k: string]: unknown;
+        };
+        speech: {
+          [k: string]: unknown;
+        } | null;
+        stopped: number | null;
+        unconfirmed: boolean;
+        version: number;
+      };
     };
     /** Answer what is asked on the screen; the result says whether nobody was faster. */
     touch: {
@@ -2051,7 +2721,7 @@ export interface Methods {
         number: number;
         answer: string;
       };
-      result: unknown;
+      result: boolean;
     };
     /**
      * Answer, from the desk, for whoever is asked and is silent or not there; the run's log says so, with `who`. The result says whether nobody was faster.
@@ -2063,7 +2733,7 @@ export interface Methods {
         who: string;
         language?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      result: boolean;
     };
     /** Tell what people have made of the page of HTML that is shown. */
     page: {
@@ -2071,7 +2741,7 @@ export interface Methods {
         page: number;
         html: string;
       };
-      result: unknown;
+      result: null;
     };
     /** Tell how the page is after a "face.act"; null if it could not be done. */
     did: {
@@ -2079,28 +2749,28 @@ export interface Methods {
         number: number;
         html: string | null;
       };
-      result: unknown;
+      result: null;
     };
     /**
      * Tell that somebody touches the web page that is shown, which tells nothing itself.
      */
     used: {
       params: Record<string, never>;
-      result: unknown;
+      result: null;
     };
     /** Let the robot speak and hear this language from now on. */
     language: {
       params: {
         code: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      result: null;
     };
     /**
      * Tell whether the web page at the address that is shown lets itself be shown here: yes, refuses or away.
      */
     site: {
       params: Record<string, never>;
-      result: unknown;
+      result: 'away' | 'refuses' | 'yes';
     };
   };
   call: {
@@ -2109,21 +2779,21 @@ export interface Methods {
       params: {
         side: 'face' | 'operator';
       };
-      result: unknown;
+      result: null;
     };
     /** Call the robot: its faces ring. */
     start: {
       params: {
         who: string;
       };
-      result: unknown;
+      result: number;
     };
     /** Take the call that rings here; the result says whether it still rang. */
     answer: {
       params: {
         call: number;
       };
-      result: unknown;
+      result: boolean;
     };
     /**
      * Go on with a call that another page of this browser was in; the result says whether it still is.
@@ -2133,7 +2803,7 @@ export interface Methods {
         call: number;
         key: string;
       };
-      result: unknown;
+      result: boolean;
     };
     /** End the call, or decline the one that rings here. */
     end: {
@@ -2141,15 +2811,17 @@ export interface Methods {
         call: number;
         because?: 'hung_up' | 'lost' | 'no_way';
       };
-      result: unknown;
+      result: null;
     };
     /** Tell the other side's WebRTC connection something. */
     signal: {
       params: {
         call: number;
-        signal: {};
+        signal: {
+          [k: string]: unknown;
+        };
       };
-      result: unknown;
+      result: null;
     };
   };
   runs: {
@@ -2164,14 +2836,41 @@ export interface Methods {
         until?: string;
         before?: number;
       };
-      result: unknown;
+      /**
+       * Some runs; `found`: how many there are in all, `more`: whether there are older ones.
+       */
+      result: {
+        found: number;
+        more: boolean;
+        /** Items: `nl2robot.run.archive.Brief`, with its state. */
+        runs: {
+          approved_by: string;
+          calls: number;
+          changed_by: string | null;
+          finished: number | null;
+          heard: string | null;
+          id: number;
+          message: string | null;
+          process: number | null;
+          program: string;
+          proposed: string | null;
+          robot: string | null;
+          started: number;
+          state: 'done' | 'failed' | 'interrupted' | 'limit' | 'running' | 'stopped';
+          status: string | null;
+          utterance: string | null;
+          world: string | null;
+        }[];
+      };
     };
     /** Everything that is logged of a run. */
     show: {
       params: {
         run: number;
       };
-      result: unknown;
+      result: {
+        [k: string]: unknown;
+      };
     };
   };
   routines: {
@@ -2180,7 +2879,29 @@ export interface Methods {
       params: {
         reader?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      /**
+       * Items: A routine for the wire; `steps` are depth and text, times ISO 8601, local.
+       */
+      result: {
+        by: string;
+        changed: string;
+        changed_by: string;
+        does: string;
+        formerly: string[];
+        imported: string;
+        language: string;
+        learned: string;
+        name: string;
+        program: string;
+        reviewed: boolean;
+        reviewed_by: string;
+        runs: number | null;
+        sentence: string;
+        sha256: string;
+        steps: never[][];
+        works: boolean;
+        written: string;
+      }[];
     };
     /** Tell all about a routine. */
     show: {
@@ -2189,7 +2910,27 @@ export interface Methods {
         language: string;
         reader?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      /** A routine for the wire; `steps` are depth and text, times ISO 8601, local. */
+      result: {
+        by: string;
+        changed: string;
+        changed_by: string;
+        does: string;
+        formerly: string[];
+        imported: string;
+        language: string;
+        learned: string;
+        name: string;
+        program: string;
+        reviewed: boolean;
+        reviewed_by: string;
+        runs: number | null;
+        sentence: string;
+        sha256: string;
+        steps: never[][];
+        works: boolean;
+        written: string;
+      };
     };
     /** Tell what a sentence or a program would do as a routine; keeps nothing. */
     check: {
@@ -2200,7 +2941,14 @@ export interface Methods {
         sentence?: string;
         program?: string;
       };
-      result: unknown;
+      /** What a sentence or a program would do; `name`: why it can have no such name. */
+      result: {
+        does: string;
+        name: string | null;
+        steps: never[][];
+        works: boolean;
+        written: string;
+      };
     };
     /** Try a routine in a copy of the simulated world, with its picture; moves nothing. */
     test: {
@@ -2209,7 +2957,19 @@ export interface Methods {
         language: string;
         reader?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      /** A dry run; `picture` is an SVG of its way. */
+      result: {
+        facts: never[][];
+        good: boolean;
+        /** Items: Something to know of a line. */
+        marks: {
+          line: number;
+          text: string;
+          weight: 'error' | 'note' | 'risk';
+        }[];
+        outcome: string;
+        picture: string | null;
+      };
     };
     /** Keep a sentence or a program under a name that can be said. */
     keep: {
@@ -2221,7 +2981,27 @@ export interface Methods {
         program?: string;
         by?: string;
       };
-      result: unknown;
+      /** A routine for the wire; `steps` are depth and text, times ISO 8601, local. */
+      result: {
+        by: string;
+        changed: string;
+        changed_by: string;
+        does: string;
+        formerly: string[];
+        imported: string;
+        language: string;
+        learned: string;
+        name: string;
+        program: string;
+        reviewed: boolean;
+        reviewed_by: string;
+        runs: number | null;
+        sentence: string;
+        sha256: string;
+        steps: never[][];
+        works: boolean;
+        written: string;
+      };
     };
     /** Let a routine do something else from now on. */
     change: {
@@ -2233,7 +3013,27 @@ export interface Methods {
         program?: string;
         by?: string;
       };
-      result: unknown;
+      /** A routine for the wire; `steps` are depth and text, times ISO 8601, local. */
+      result: {
+        by: string;
+        changed: string;
+        changed_by: string;
+        does: string;
+        formerly: string[];
+        imported: string;
+        language: string;
+        learned: string;
+        name: string;
+        program: string;
+        reviewed: boolean;
+        reviewed_by: string;
+        runs: number | null;
+        sentence: string;
+        sha256: string;
+        steps: never[][];
+        works: boolean;
+        written: string;
+      };
     };
     /** Call a routine otherwise. */
     rename: {
@@ -2243,7 +3043,13 @@ export interface Methods {
         reader?: 'en' | 'de' | 'fr';
         new: string;
       };
-      result: unknown;
+      /**
+       * `used_by`: a sentence that names the routines that call it; empty if there are none.
+       */
+      result: {
+        name: string;
+        used_by: string;
+      };
     };
     /** Let an imported routine be used, whose body with this SHA-256 was reviewed. */
     accept: {
@@ -2254,7 +3060,27 @@ export interface Methods {
         sha256: string;
         by?: string;
       };
-      result: unknown;
+      /** A routine for the wire; `steps` are depth and text, times ISO 8601, local. */
+      result: {
+        by: string;
+        changed: string;
+        changed_by: string;
+        does: string;
+        formerly: string[];
+        imported: string;
+        language: string;
+        learned: string;
+        name: string;
+        program: string;
+        reviewed: boolean;
+        reviewed_by: string;
+        runs: number | null;
+        sentence: string;
+        sha256: string;
+        steps: never[][];
+        works: boolean;
+        written: string;
+      };
     };
     /** Forget a routine; returns a number with which it can be restored. */
     remove: {
@@ -2263,14 +3089,18 @@ export interface Methods {
         language: string;
         reader?: 'en' | 'de' | 'fr';
       };
-      result: unknown;
+      /** `number`: with which it can be restored. */
+      result: {
+        number: number;
+        used_by: string;
+      };
     };
     /** Undo a removal. */
     restore: {
       params: {
         number: number;
       };
-      result: unknown;
+      result: null;
     };
     /** Give routines as a file: those that are named, or all. */
     export: {
@@ -2281,7 +3111,11 @@ export interface Methods {
           language: string;
         }[];
       };
-      result: unknown;
+      /** A file to keep, by its name. */
+      result: {
+        file: string;
+        text: string;
+      };
     };
     /**
      * Look at a file of routines; with `keep`, take those over. What is taken over cannot be used before routines.accept.
@@ -2298,7 +3132,27 @@ export interface Methods {
           replace?: boolean;
         }[];
       };
-      result: unknown;
+      /** What is in a file, or what of it was taken over. */
+      result: {
+        /** Items: A routine of a file, and how it stands to those that are known. */
+        found?: {
+          does: string;
+          language: string;
+          line: number;
+          name: string;
+          sentence: string;
+          state: 'new' | 'same' | 'taken' | 'unfit';
+          steps: never[][];
+          why: string;
+          works: boolean;
+          written: string;
+        }[];
+        /** Items: A routine that was taken over. */
+        kept?: {
+          language: string;
+          name: string;
+        }[];
+      };
     };
   };
   devices: {
@@ -2307,7 +3161,32 @@ export interface Methods {
      */
     list: {
       params: Record<string, never>;
-      result: unknown;
+      /** What tablets and people came in by, and who failed to. */
+      result: {
+        accounts?: {
+          name: string;
+          role: 'administrator' | 'assistant' | 'face' | 'observer' | 'operator';
+          made: number;
+        }[];
+        /** Items: `nl2robot.station.accounts.Session`, and whether it is the asker's own. */
+        devices: {
+          account: string | null;
+          id: number;
+          label: string;
+          link: boolean;
+          made: number;
+          made_by: string | null;
+          mine: boolean;
+          role: 'administrator' | 'assistant' | 'face' | 'observer' | 'operator';
+          used: number;
+        }[];
+        failures: {
+          time: number;
+          name: string;
+          address: string;
+        }[];
+        here_only: boolean;
+      };
     };
     /** Make a link by which one tablet comes in within ten minutes, and its QR code. */
     pair: {
@@ -2316,7 +3195,12 @@ export interface Methods {
         label: string;
         at?: string;
       };
-      result: unknown;
+      /** A link by which one tablet comes in, its QR code as a data URL, and until when. */
+      result: {
+        ends: number | null;
+        link: string;
+        picture: string;
+      };
     };
     /**
      * Let nobody come in by this any more; whoever is connected by it is not from then on.
@@ -2325,7 +3209,7 @@ export interface Methods {
       params: {
         device: number;
       };
-      result: unknown;
+      result: null;
     };
   };
 }
@@ -2419,7 +3303,7 @@ export interface Events {
    */
   'schedule.buttons': any;
   /**
-   * id, time, kind (missed | missed_many | overtaken | waits | ends_soon | ended | changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once), occurrence, parts, told (the sentence by language): what somebody has to know who was not looking
+   * id (null if the book of appointments cannot be written), time, kind (missed | missed_many | overtaken | waits | ends_soon | ended | changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once, and of trouble), occurrence, parts, told (the sentence by language): what somebody has to know who was not looking
    */
   notice: any;
   /**
@@ -2461,6 +3345,9 @@ export interface Events {
   /** nothing; whenever a routine was learned, changed or removed */
   routines: any;
 }
+
+/** Bytes. */
+export type LongestFrame = 262144;
 
 /** The kinds of events that can be subscribed to. */
 export type EventName = keyof Events;

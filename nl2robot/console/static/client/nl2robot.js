@@ -11,7 +11,7 @@
  * `robot.stop` overtakes them all. This file needs no other, and nothing needs to be built.
  */
 
-/** @import {Api, CallOptions, ErrorName, EventName} from './methods.js' */
+/** @import {Api, CallOptions, ErrorName, EventName, LongestFrame} from './methods.js' */
 
 /**
  * @typedef {object} ConnectOptions
@@ -24,8 +24,12 @@
 
 /** @typedef {RobotConnection & Api} Robot */
 
-/** Bytes. A server closes the connection on whoever sends more, with all that is in flight. */
-const LONGEST_FRAME = 256 * 1024;
+/**
+ * Bytes. A server closes the connection on whoever sends more, with all that is in flight. It says so
+ * itself: with another number here, this does not compile.
+ * @type {LongestFrame}
+ */
+const LONGEST_FRAME = 262144;
 const IN_A_PAGE = typeof document !== 'undefined';
 
 /** What went wrong, in a sentence; `name` is its name on the wire, such as "Blocked". */

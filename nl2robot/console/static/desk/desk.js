@@ -185,7 +185,9 @@ function openDecisions() {
     if (event.target.closest('#run-anyway')) approve(true);
     const atTimes = event.target.closest('#at-times');
     if (atTimes) plan(atTimes);
-    if (event.target.closest('#reject')) tell('desk-reject');
+    if (event.target.closest('#reject')) {
+      tell('desk-reject', {reason: document.getElementById('why-not')?.value ?? ''});
+    }
     const change = event.target.closest('#change');
     if (change) changeIt(change.dataset.words);
   });
