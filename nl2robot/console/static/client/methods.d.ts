@@ -2006,6 +2006,7 @@ export interface Methods {
           offer?: string | null;
           robot?: string | null;
           robot_name?: string | null;
+          session?: string;
           run?: number | null;
           message?: string | null;
           refused?: {
@@ -2076,6 +2077,7 @@ export interface Methods {
         offer?: string | null;
         robot?: string | null;
         robot_name?: string | null;
+        session?: string;
         run?: number | null;
         message?: string | null;
         refused?: {
@@ -2106,6 +2108,7 @@ export interface Methods {
         offer?: string | null;
         robot?: string | null;
         robot_name?: string | null;
+        session?: string;
         run?: number | null;
         message?: string | null;
         refused?: {
@@ -2133,6 +2136,7 @@ export interface Methods {
         offer?: string | null;
         robot?: string | null;
         robot_name?: string | null;
+        session?: string;
         run?: number | null;
         message?: string | null;
         refused?: {
@@ -3044,7 +3048,7 @@ export interface Methods {
         new: string;
       };
       /**
-       * `used_by`: a sentence that names the routines that call it; empty if there are none.
+       * `used_by`: the names of the routines that need it, with commas between; maybe empty.
        */
       result: {
         name: string;
