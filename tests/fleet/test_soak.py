@@ -112,18 +112,21 @@ class Day:
     def alive(self) -> list[str]:
         return [each for each in self.names if each not in self.dead]
 
-    def is_given_something(self, lasts: int = 20) -> None:
+    def is_given_something(self) -> None:
         at = self.chance.choice(self.alive)
-        place = self.chance.choice(("ward a", "ward b", "corridor"))
-        number = len(self.errands)
-        program = f'robot.goto("{place}")\nrobot.say("{number}")\nrobot.wait({lasts})\n'
-        wanted = {"robot": self.ids[self.chance.choice(self.names)]} if number % 4 == 3 else {}
+        some = len(self.errands) % 4 == 3 and at != self.stranger
+        wanted = {"robot": self.ids[self.chance.choice(self.names)]} if some else {}
         try:
-            id = self.ward.run(at, program, **wanted)
+            self._given(at, **wanted)
         except RobotError as error:  # one that has just begun has heard of nobody
             assert "There is no robot" in str(error), error
-            return
+
+    def _given(self, at: str, lasts: int = 20, **wanted: str) -> str:
+        place, number = self.chance.choice(("ward a", "ward b", "corridor")), len(self.errands)
+        program = f'robot.goto("{place}")\nrobot.say("{number}")\nrobot.wait({lasts})\n'
+        id = self.ward.run(at, program, **wanted)
         self.errands.append((at, id, program))
+        return id
 
     def happens(self, what: str) -> None:
         self.happened[what] += 1
@@ -179,15 +182,14 @@ class Day:
         self.unknown.append(time.monotonic() - began)
 
     def _busy(self) -> str | None:
-        """One that does something now, as it says itself; it was just given to the fleet."""
-        self.is_given_something(lasts=150)
-        at, errand, _ = self.errands[-1]
-        if at in self.alive:
-            self.ward.ask(at, "wait", errand=errand, timeout=6.0)
-        for name in self.chance.sample(self.alive, len(self.alive)):
-            [here] = [each for each in self.ward.ask(name, "list")["members"] if each["here"]]
-            if (here["standing"] or {}).get("state") == "running":
-                return name
+        """One that does something now, which was just given to the fleet."""
+        at = self.chance.choice([each for each in self.alive if each != self.stranger])
+        id = self._given(at, lasts=150)
+        found, ends = {"state": "looking"}, time.monotonic() + 30.0
+        while found["state"] in OPEN and time.monotonic() < ends:
+            found = self.ward.ask(at, "wait", errand=id, timeout=0.3)
+            if found["state"] == "begun":
+                return next(name for name in self.alive if self.ids[name] == found["robot"])
         return None
 
     def _is_alone(self, name: str) -> None:
@@ -199,16 +201,16 @@ class Day:
         with self.ward.robot(name) as robot:
             run = robot.request("program.state", {})["run"]
             if self.chance.random() < 0.5:
+                asked = time.monotonic()
                 robot.stop()  # raises if it has not confirmed that it stands
-                self.stops.append(time.monotonic() - began)
+                self.stops.append(time.monotonic() - asked)
+            others = [each for each in self.alive if each != name]
+            if others:
+                other = self.chance.choice(others)
+                self.ward.until(other, lambda found: not self._knows(found, name))
+                self.unknown.append(time.monotonic() - began)
             if run is not None:
                 robot.request("program.wait", {"run": run})
-        others = [each for each in self.alive if each != name]
-        if not others:
-            return
-        other = self.chance.choice(others)
-        self.ward.until(other, lambda found: not self._knows(found, name))
-        self.unknown.append(time.monotonic() - began)
 
     def _knows(self, found: dict[str, Any], name: str) -> bool:
         return any(each["known"] for each in found["members"] if each["id"] == self.ids[name])
