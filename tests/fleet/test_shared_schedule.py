@@ -21,7 +21,7 @@ from nl2robot.schedule.service import Timing
 from nl2robot.station.station import SimulatedStation, simulated_station
 from robot_api.errors import InvalidCall
 from sim.world.loading import load_world
-from tests.fleet.test_stations import port
+from tests.fleet.wards import port
 from tests.schedule.conftest import ZURICH, Clock
 
 ROUND = 'robot.goto("ward a")\nrobot.say("Good morning.")\n'
