@@ -35,7 +35,7 @@ COMMANDS = {
     "routines": "commands with a name: list, explain, learn, change, forget, export, import",
     "schedule": "approved programs at set times: list, add, pause, call off, remove, history",
     "proposals": "what assistants propose to a server's robot: approve it, or say no",
-    "fleet": "several robots at once: list them, give one something to do, stop them",
+    "fleet": "several robots: list them, give one something to do, call that off, stop them",
     "mcp": "a door for assistants, over the Model Context Protocol",
     "serve": "the robot server on one port, a simulated hospital by default",
     "accounts": "who may come in to the server here: people, and tablets by a QR code",

@@ -17,8 +17,9 @@ from typing import Any, Final
 import msgspec
 
 from nl2robot.errors import UserError
-from nl2robot.fleet.messages import Stand, ZoneEntry
+from nl2robot.fleet.messages import Plans, Stand, ZoneEntry
 from nl2robot.private_database import private_database
+from nl2robot.schedule.outcomes import Outcome
 from robot_api.errors import cause
 
 FILE: Final = "fleet.sqlite"
@@ -33,6 +34,7 @@ CREATE TABLE IF NOT EXISTS errands (
     number INTEGER PRIMARY KEY, id TEXT UNIQUE, errand BLOB, open INTEGER NOT NULL
 );
 CREATE TABLE IF NOT EXISTS zones (map TEXT, name TEXT, entry BLOB, PRIMARY KEY (map, name));
+CREATE TABLE IF NOT EXISTS plans (robot TEXT PRIMARY KEY, plans BLOB);
 """
 
 
@@ -53,6 +55,7 @@ class Offer(msgspec.Struct, frozen=True, kw_only=True):
     why: str | None = None
     run: int | None = None
     status: str | None = None
+    reminded: tuple[Outcome, ...] = ()
 
 
 class Errand(msgspec.Struct, frozen=True, kw_only=True):
@@ -67,6 +70,9 @@ class Errand(msgspec.Struct, frozen=True, kw_only=True):
     reviewed: str
     at: float
     """When it was approved, in seconds since the epoch, by the clock here."""
+    until: float | None = None
+    """A robot is looked for until then, by the clock here; None: as long as the dispatcher looks
+    for one."""
     wanted: str | None = None
     """The id of the only robot that may do it."""
     state: str = "looking"
@@ -82,6 +88,8 @@ class Errand(msgspec.Struct, frozen=True, kw_only=True):
     message: str | None = None
     refused: dict[str, str] = {}
     """Why a robot did not take it, by name."""
+    reminded: tuple[Outcome, ...] = ()
+    """What came of it, if it reminded somebody."""
 
     @property
     def open(self) -> bool:
@@ -92,6 +100,7 @@ _pack = msgspec.msgpack.Encoder().encode
 _offer = msgspec.msgpack.Decoder(Offer).decode
 _errand = msgspec.msgpack.Decoder(Errand).decode
 _zone = msgspec.msgpack.Decoder(ZoneEntry).decode
+_plans = msgspec.msgpack.Decoder(Plans).decode
 
 
 class FleetBook:
@@ -107,7 +116,7 @@ class FleetBook:
             self._db.executescript(_SCHEMA)
             given = ("id", secrets.token_hex(6))
             self._db.execute("INSERT OR IGNORE INTO own VALUES (?, ?)", given)
-        [[self.robot]] = self._rows("SELECT value FROM own WHERE key = 'id'")
+        self.robot: str = self._rows("SELECT value FROM own WHERE key = 'id'")[0][0]
 
     def close(self) -> None:
         with self._lock:
@@ -129,6 +138,11 @@ class FleetBook:
         )
         return offer
 
+    def runs(self, last: int) -> set[int]:
+        """Those of the newest offers."""
+        rows = self._rows("SELECT offer FROM offers ORDER BY number DESC LIMIT ?", last)
+        return {run for row in rows if (run := _offer(row[0]).run) is not None}
+
     # --- what others are to do
 
     def errands(self, last: int = KEPT) -> list[Errand]:
@@ -137,6 +151,10 @@ class FleetBook:
             _errand(row[0])
             for row in self._rows("SELECT errand FROM errands ORDER BY number DESC LIMIT ?", last)
         ]
+
+    def errand(self, id: str) -> Errand | None:
+        rows = self._rows("SELECT errand FROM errands WHERE id = ?", id)
+        return _errand(rows[0][0]) if rows else None
 
     def keep(self, errand: Errand) -> Errand:
         """From now on it stands like that; on disk when this returns."""
@@ -158,6 +176,19 @@ class FleetBook:
         self._write(
             "INSERT OR REPLACE INTO zones VALUES (?, ?, ?)", floor, entry.name, _pack(entry)
         )
+
+    # --- what the others have planned
+
+    def plans(self) -> dict[str, Plans]:
+        """By the id of the robot that keeps them."""
+        return {robot: _plans(row) for robot, row in self._rows("SELECT robot, plans FROM plans")}
+
+    def keep_plans(self, robot: str, plans: Plans) -> None:
+        if plans.plans:
+            statement = "INSERT OR REPLACE INTO plans VALUES (?, ?)"
+            self._write(statement, robot, _pack(plans))
+        else:
+            self._write("DELETE FROM plans WHERE robot = ?", robot)
 
     def forget(self, kept: int = KEPT) -> None:
         """What older errands were, unless they are open, and what was said in older offers. How

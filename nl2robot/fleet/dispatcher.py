@@ -11,6 +11,7 @@ long nothing is heard of it.
 from __future__ import annotations
 
 import secrets
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final, Literal
@@ -63,15 +64,18 @@ class Dispatcher:
         where: Callable[[str], tuple[float, float] | None],
         say: Say,
         changed: Callable[[Errand], None] = lambda errand: None,
+        clock: Callable[[], float] = time.time,
     ) -> None:
         """`floor` is the hash of the map that errands are approved for; `where` a place is on it.
-        `changed` is told of each errand that stands another way."""
+        `changed` is told of each errand that stands another way; `clock` is the one by which
+        some are wanted until a moment."""
         self._book = book
         self._roll = roll
         self._floor = floor
         self._where = where
         self._say = say
         self._changed = changed
+        self._clock = clock
         self._open = {each.id: each for each in reversed(book.errands()) if each.open}
         self._hands: dict[str, _Hand] = {}
 
@@ -137,7 +141,7 @@ class Dispatcher:
             self._withdraw(errand)
             self._rests(errand, hand, robot, "It did not answer.", now)
             errand = self._open[errand.id]
-        if now - hand.since > PATIENCE:
+        if self._is_late(errand, hand, now):
             self._keep(replace(errand, state="nobody"))
             return
         robots = [
@@ -158,6 +162,11 @@ class Dispatcher:
             hand.offered = (secrets.token_hex(8), free, session, now)
             hand.said = now
             self._say(free, _offer(errand, hand.offered[0], session))
+
+    def _is_late(self, errand: Errand, hand: _Hand, now: float) -> bool:
+        if errand.until is not None:
+            return self._clock() > errand.until
+        return now - hand.since > PATIENCE
 
     def _decided(self, errand: Errand, hand: _Hand, robot: str, answer: Answer, now: float) -> None:
         """What a robot says to an offer for which it was not told to go."""
@@ -185,7 +194,15 @@ class Dispatcher:
         """What the robot says that was told to go."""
         if answer.stand == "over":
             state = answer.status or "broken_off"
-            self._keep(replace(errand, state=state, run=answer.run, message=answer.why))
+            self._keep(
+                replace(
+                    errand,
+                    state=state,
+                    run=answer.run,
+                    message=answer.why,
+                    reminded=answer.reminded,
+                )
+            )
         elif answer.stand == "begun":
             if errand.state != "begun" or errand.run != answer.run:
                 self._keep(replace(errand, state="begun", run=answer.run))

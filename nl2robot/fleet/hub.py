@@ -8,6 +8,7 @@ zones; what has to be said is said by `tick`, which is called several times a se
 from __future__ import annotations
 
 import logging
+import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ from nl2robot.fleet.messages import (
     About,
     Answer,
     Order,
+    Plans,
     Standing,
     Stop,
     Stopped,
@@ -29,6 +31,7 @@ from nl2robot.fleet.messages import (
     packed,
     unpacked,
 )
+from nl2robot.fleet.plans import SharedPlans
 from nl2robot.fleet.roll import Member, Roll
 from nl2robot.fleet.sealing import NotBelieved, Opened, Opener, Sealed, Sealer
 from nl2robot.fleet.stopping import Stops
@@ -62,6 +65,8 @@ class Deeds:
     """Draw and remove these keep-out zones."""
     changed: Callable[[Errand], None] = lambda errand: None
     """An errand of this dispatcher stands another way."""
+    planned: Callable[[], None] = lambda: None
+    """Something of the fleet's appointments is another."""
 
 
 class Hub:
@@ -79,22 +84,28 @@ class Hub:
         deeds: Deeds,
         sign: Callable[[str, Order], Order] = lambda robot, order: order,
         session: str | None = None,
+        clock: Callable[[], float] = time.time,
     ) -> None:
         """`sign` puts this station's signature under an order for the robot of that id."""
         self.me = book.robot
+        self.book = book
         self.about = about
         self._standing = standing
         self._send = send
-        self._deeds = deeds
+        self.deeds = deeds
         self._sign = sign
         self.sealer = Sealer(key, self.me, session)
         self._opener = Opener(key, self.me)
         self.roll = Roll()
         self.dispatcher = Dispatcher(
-            book, self.roll, about.map, where, self._say_order, deeds.changed
+            book, self.roll, about.map, where, self._say_order, deeds.changed, clock
         )
         self.stops = Stops(lambda robot, stop: self.say("stop", stop, robot))
         self.zones = SharedZones(book, self.me, about.map)
+        self.plans = SharedPlans(book, self.me, about.name)
+        self.doubled = False
+        """Whether another robot was heard that goes by this one's id: its data folder was copied,
+        and with it what it has planned."""
         self.refused: Counter[str] = Counter()
         """What was not believed, by why."""
         self.bytes_sent = 0
@@ -124,6 +135,10 @@ class Hub:
                 return
             if opened.kind == "tell":
                 self.say("about", self.about, opened.sender)
+                return
+            if opened.kind == "plan":
+                if self.plans.mine is not None:
+                    self.say("plans", self.plans.mine, opened.sender)
                 return
             message = unpacked(opened.kind, opened.payload)
         except (msgspec.MsgspecError, KeyError):
@@ -182,7 +197,9 @@ class Hub:
         since = now - self._said_at
         if since < STATE_SOONEST:
             return
-        standing = msgspec.structs.replace(self._standing(), zones=self.zones.digest)
+        standing = msgspec.structs.replace(
+            self._standing(), zones=self.zones.digest, plans=self.plans.digest
+        )
         if standing == self._said and since < STATE_EVERY:
             return
         self._said, self._said_at = standing, now
@@ -192,6 +209,7 @@ class Hub:
         sealed = error.sealed
         if error.trouble == "own" and sealed is not None:
             if sealed.session != self.sealer.session:
+                self.doubled = True
                 self._warn(
                     "Another robot of the fleet has this robot's id: its data folder was copied."
                     " Remove fleet.sqlite from one of the two folders, and start that robot again."
@@ -242,18 +260,23 @@ class Hub:
                     member.number, member.standing = opened.number, message
                 if message.zones != self.zones.digest and self._on_this_map(member):
                     self._zones_owed = True  # one of us lacks something; so does the other say
+                if sender != self.me and self.plans.lacks(sender, message.plans, now):
+                    self._put("plan", b"", sender)
             case Order():
-                self._deeds.ordered(sender, message)
+                self.deeds.ordered(sender, message)
             case Answer():
                 self.dispatcher.hear(sender, opened.session, message, now)
             case Stop():
-                self._deeds.stopped(sender, message)
+                self.deeds.stopped(sender, message)
             case Stopped():
                 self.stops.hear(sender, message)
             case Zones():
                 newer = self.zones.heard(message)
                 if newer:
-                    self._deeds.zoned(newer)
+                    self.deeds.zoned(newer)
+            case Plans():
+                self.plans.heard(sender, message)
+                self.deeds.planned()
 
     def _on_this_map(self, member: Member) -> bool:
         return member.about is not None and member.about.map == self.about.map

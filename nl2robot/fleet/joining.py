@@ -9,35 +9,41 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, Protocol
 
 import msgspec
 
-from grammar.language import languages
 from nl2robot import __version__
 from nl2robot.errors import UserError
 from nl2robot.fleet.address import FleetAddress
 from nl2robot.fleet.book import FILE, Errand, FleetBook, Offer
+from nl2robot.fleet.choosing import called
 from nl2robot.fleet.hub import Deeds, Hub
 from nl2robot.fleet.inbox import Inbox
+from nl2robot.fleet.keeping import Keeping, check_for_all
 from nl2robot.fleet.key import fingerprint, fleet_key
 from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped, ZoneEntry
 from nl2robot.fleet.network import Network
 from nl2robot.fleet.performing import Performer
+from nl2robot.fleet.trouble import Trouble
 from nl2robot.fleet.trust import Station
 from nl2robot.review.review import digest
 from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING
 from nl2robot.schedule.findings import News, decoded, findings_of, news
+from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
 from nl2robot.schedule.service import waits_for
-from nl2robot.sentences import in_language
+from nl2robot.schedule.telling import trouble
 from robot_api.client import Robot
 from robot_api.errors import RobotError
 from sim.world.model import World
 
 TICKS: Final = 0.1
 """Seconds between two looks at what is to be said."""
+LOOKS_EVERY: Final = 1.0
+"""Seconds between two looks at whether the fleet is reached."""
 TOLD_EVERY: Final = 0.2
 """Seconds between two events `fleet`."""
 FORGETS_EVERY: Final = 3600.0
@@ -119,9 +125,19 @@ class Fleet:
                 stopped=self._stop_for,
                 zoned=self._zones.put,
                 changed=lambda errand: self._changed.notify_all(),
+                planned=self._planned,
             ),
             sign=lambda robot, order: self._station.signed(self.book.robot, robot, order),
         )
+        self.keeping = Keeping(
+            self.hub,
+            self._lock,
+            partial(check_for_all, runner),
+            address.name,
+            self.add,
+            time.monotonic,
+        )
+        """For the appointments that are kept here."""
         self.network = Network(
             address,
             fingerprint(key),
@@ -133,6 +149,8 @@ class Fleet:
             lambda robot, session: self._heard.put(lambda now: self.hub.gone(robot, session)),
             self._notify,
         )
+        self.trouble = Trouble(address.connects, fingerprint(key))
+        self._looked_at = float("-inf")
         self._performer = Performer(self.book, self.hub.sealer.session, self, time.monotonic)
         self._threads = [
             threading.Thread(target=target, name=f"fleet {name}", daemon=True)
@@ -200,6 +218,11 @@ class Fleet:
     def errands(self, last: int = 20) -> list[Errand]:
         return self.book.errands(last)
 
+    def trouble_told(self) -> dict[str, str] | None:
+        """Why the fleet is not reached, by language; None if nothing is known against it."""
+        said = self.trouble.said
+        return trouble(said)["told"] if said is not None else None
+
     def add(self, errand: Errand) -> Errand:
         """Have it done by the best robot. Raises `UserError` if too much is to be done already."""
         with self._lock:
@@ -230,6 +253,29 @@ class Fleet:
                 " them another name."
             )
         return found[0].id
+
+    def fit(self, name: str, program: str) -> str:
+        """The id of the robot of that name or id, if it could ever do this program. Raises
+        `UserError`."""
+        id = self.one(name)
+        with self._lock:
+            about, floor = self.hub.roll.members[id].about, self.hub.about.map
+        if about is None:  # it has not said what it is
+            return id
+        if about.map != floor:
+            raise UserError(
+                f"{about.name} has another floor than this robot, so the program means nothing"
+                " there. Choose another robot."
+            )
+        try:
+            lacks = sorted(called(program) - set(about.methods))
+        except (SyntaxError, ValueError, RecursionError):  # which its review says in words
+            return id
+        if lacks:
+            raise UserError(
+                f"{about.name} cannot do that: it lacks {', '.join(lacks)}. Choose another robot."
+            )
+        return id
 
     def wait(self, id: str, timeout: float, given_up: Callable[[], bool]) -> Errand:
         """Until an errand is over, or the time is up. Raises `UserError` if there is none."""
@@ -318,9 +364,16 @@ class Fleet:
             return "broken_off", None
         return found.status, found.message
 
+    def reminded(self, run: int) -> tuple[Outcome, ...]:
+        found = self._runner.log.run(run)
+        if found is None or asking_of(found.program) is None:
+            return ()
+        return tuple(outcomes(found.program, self._runner.log.calls(run)))
+
     def lost(self, offer: Offer) -> int | None:
+        known = self.book.runs(LATEST_RUNS)  # the same appointment is done every day
         for run in self._runner.log.runs(LATEST_RUNS):
-            if run.sha256 == offer.sha256 and run.approved_by == offer.by:
+            if (run.sha256, run.approved_by) == (offer.sha256, offer.by) and run.id not in known:
                 return run.id
         return None
 
@@ -341,9 +394,12 @@ class Fleet:
     def _standing(self) -> Standing:
         state, pose = self._runner.present.state, self._pose
         waits = waits_for(state, time.time(), self._battery)
+        # Some time after a stop it is free again, though nothing has happened since.
+        over = state.state == "stopped" and waits is None
+        rests = "charging" if state.charging else "idle"
         known = all(isinstance(pose.get(each), int | float) for each in ("x", "y", "theta"))
         return Standing(
-            state=state.state,
+            state=rests if over else state.state,
             x=round(pose["x"], 2) if known else None,
             y=round(pose["y"], 2) if known else None,
             theta=round(pose["theta"], 0) if known else None,
@@ -351,7 +407,7 @@ class Fleet:
             battery=round(self._battery) if self._battery is not None else None,
             charging=state.charging,
             run=state.run,
-            because=state.because,
+            because=None if over else state.because,
             driven_by=state.driven_by,
             waits=waits,
         )
@@ -359,6 +415,10 @@ class Fleet:
     def _where(self, place: str) -> tuple[float, float] | None:
         found = self._runner.knowledge.world.place(place)
         return (found.pose.x, found.pose.y) if found is not None and found.pose else None
+
+    def _planned(self) -> None:
+        if self._stage is not None:
+            self._stage.publish("fleet.plans", {})
 
     def _on_event(self, kind: str, data: Mapping[str, Any]) -> None:
         if kind == "pose":
@@ -386,6 +446,7 @@ class Fleet:
                         self.hub.tick(now)
                 if now == ticked:
                     self._tell(now)
+                    self._look_around(now)
                 if now - self._forgot_at >= FORGETS_EVERY:
                     self._forgot_at = now
                     self.book.forget()
@@ -406,17 +467,35 @@ class Fleet:
             self._notify(TWINS.format(name=self.name, id=self.hub.me))
         self._twins = twins
         if stage.wanted("fleet"):
-            told = {"members": self.members(), "errands": msgspec.to_builtins(self.errands())}
+            told = {
+                "members": self.members(),
+                "errands": msgspec.to_builtins(self.errands()),
+                "trouble": self.trouble_told(),
+            }
             stage.publish("fleet", told)
+
+    def _look_around(self, now: float) -> None:
+        """Whether the fleet is reached, told here where it is not."""
+        if self._stage is None or now - self._looked_at < LOOKS_EVERY:
+            return
+        self._looked_at = now
+        with self._lock:
+            others = any(
+                each.about is not None
+                for each in self.hub.roll.members.values()
+                if each.id != self.hub.me
+            )
+        network = self.network
+        said = self.trouble.look(now, network.reached, others, network.strangers)
+        if said is not None:
+            self._notify(said)
 
     def _notify(self, sentence: str) -> None:
         """A notice on every page of the console."""
         _log.warning("%s", sentence)
         if self._stage is None:
             return
-        said = {code: in_language(sentence, code) or sentence for code in languages()}
-        data = {"id": None, "time": time.time(), "kind": "trouble", "appointment": None}
-        self._stage.publish("notice", {**data, "occurrence": None, "parts": {}, "told": said})
+        self._stage.publish("notice", trouble(sentence))
 
     def _perform(self) -> None:
         """Orders, one after the other: a review takes its time."""

@@ -11,6 +11,8 @@
 | stop    | anybody, one         | `Stop`                                                        |
 | stopped | a robot, one         | `Stopped`: whether it has confirmed that it stands             |
 | zones   | a robot, all         | `Zones`: the keep-out zones drawn on a map                     |
+| plan    | anybody, one         | what has it planned? answered by `plans`                       |
+| plans   | a robot, one         | `Plans`: the appointments of the fleet that are kept there     |
 """
 
 from __future__ import annotations
@@ -19,6 +21,8 @@ from typing import Any, Final, Literal
 
 import msgspec
 
+from nl2robot.schedule.outcomes import Outcome
+from nl2robot.schedule.plans import Plan
 from sim.world.geometry import Polygon
 
 
@@ -51,6 +55,8 @@ class Standing(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     driven_by: str | None = None
     zones: str = ""
     """A hash of the keep-out zones that it knows of its map: who knows others says which."""
+    plans: str | None = None
+    """A hash of the fleet's appointments that it keeps; None: it does not say."""
     waits: str | None = None
     """Why it would begin nothing now, as `nl2robot.schedule.clerk.Waits`; None: it is free."""
 
@@ -91,6 +97,8 @@ class Answer(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     run: int | None = None
     status: str | None = None
     """Of a run that is over, as `nl2robot.run.runs`, or "broken_off"."""
+    reminded: tuple[Outcome, ...] = ()
+    """What came of a run that reminded somebody."""
 
 
 class Stop(msgspec.Struct, frozen=True):
@@ -120,6 +128,12 @@ class Zones(msgspec.Struct, frozen=True):
     entries: tuple[ZoneEntry, ...]
 
 
+class Plans(msgspec.Struct, frozen=True):
+    name: str
+    """Of the robot that keeps them."""
+    plans: tuple[Plan, ...]
+
+
 KINDS: Final[dict[str, Any]] = {
     "about": About,
     "state": Standing,
@@ -128,6 +142,7 @@ KINDS: Final[dict[str, Any]] = {
     "stop": Stop,
     "stopped": Stopped,
     "zones": Zones,
+    "plans": Plans,
 }
 _decoders = {kind: msgspec.msgpack.Decoder(made) for kind, made in KINDS.items()}
 _encode = msgspec.msgpack.Encoder().encode

@@ -78,6 +78,8 @@ class Network:
         self._inspection: Inspection | None = None
         self._session: Session | None = None
         self._declared: list[Any] = []
+        self._strangers: dict[str, str] = {}
+        """The tokens of robots with another key, and its fingerprint."""
 
     def open(self) -> None:
         """Join. Raises `UserError` if that cannot be: no Zenoh, a port that is taken."""
@@ -99,6 +101,13 @@ class Network:
                 *_, robot, session = str(sample.key_expr).split("/")
                 self._gone(robot, session)
 
+        def passes(sample: Any) -> None:
+            token = str(sample.key_expr)
+            if sample.kind == SampleKind.DELETE:
+                self._strangers.pop(token, None)
+            elif not token.startswith(f"{self._fleet}/"):
+                self._strangers[token] = token.split("/")[1]
+
         try:
             config = self._config(zenoh.Config)
             session = self._session = zenoh.open(config)
@@ -106,6 +115,9 @@ class Network:
                 session.declare_subscriber(f"{self._fleet}/all/*", sample),
                 session.declare_subscriber(f"{self._fleet}/to/{self._robot}", sample),
                 session.liveliness().declare_subscriber(f"{self._fleet}/alive/*/*", alive),
+                session.liveliness().declare_subscriber(
+                    f"{ROOT}/*/alive/*/*", passes, history=True
+                ),
                 session.liveliness().declare_token(self._alive),
             ]
         except zenoh.ZError as error:
@@ -124,6 +136,17 @@ class Network:
         self._declared = []
         if session is not None:
             session.close()  # type: ignore[no-untyped-call]
+
+    @property
+    def reached(self) -> bool:
+        """Whether it is connected to anybody."""
+        session = self._session
+        return session is not None and bool(session.info.routers_zid() or session.info.peers_zid())
+
+    @property
+    def strangers(self) -> set[str]:
+        """The fingerprints of other keys, by which robots go that are reached."""
+        return set(self._strangers.copy().values())
 
     def send(self, to: str, raw: bytes, *, urgent: bool) -> None:
         """To one robot, or to all; lost if nobody is reached, or too much waits to be sent."""

@@ -19,6 +19,7 @@ import msgspec
 
 from nl2robot.fleet.book import FleetBook, Offer
 from nl2robot.fleet.messages import Answer, Order, Stand
+from nl2robot.schedule.outcomes import Outcome
 from robot_api.errors import RobotError
 
 HOLDS: Final = 20.0
@@ -43,6 +44,9 @@ class Means(Protocol):
 
     def came(self, run: int) -> tuple[str | None, str | None]:
         """How a run ended and why, as far as it has ended."""
+
+    def reminded(self, run: int) -> tuple[Outcome, ...]:
+        """What came of a run that is over, if it reminded somebody."""
 
     def lost(self, offer: Offer) -> int | None:
         """The run of an offer that a process which is gone had begun, if it came to that."""
@@ -136,7 +140,12 @@ class Performer:
         if offer.stand == "begun":
             offer = self._followed(offer)
         return Answer(
-            offer=offer.id, stand=offer.stand, why=offer.why, run=offer.run, status=offer.status
+            offer=offer.id,
+            stand=offer.stand,
+            why=offer.why,
+            run=offer.run,
+            status=offer.status,
+            reminded=offer.reminded,
         )
 
     def _followed(self, offer: Offer) -> Offer:
@@ -152,5 +161,8 @@ class Performer:
         status, why = self._means.came(run)
         if status is None:
             return offer
-        over = msgspec.structs.replace(offer, stand="over", status=status, why=why, run=run)
+        came = self._means.reminded(run)
+        over = msgspec.structs.replace(
+            offer, stand="over", status=status, why=why, run=run, reminded=came
+        )
         return self._book.note(over)

@@ -12,12 +12,12 @@ import msgspec
 from nl2robot.errors import UserError
 from nl2robot.fleet.book import Errand
 from nl2robot.fleet.joining import Fleet
+from nl2robot.fleet.keeping import Kept, check_for_all
 from nl2robot.fleet.messages import About, Standing
-from nl2robot.knowledge import Knowledge
-from nl2robot.review.review import digest, review
+from nl2robot.review.review import digest
 from nl2robot.run.runner import Runner
 from nl2robot.schedule.findings import encoded, findings_of
-from nl2robot.wire import NAME, SHA256, service, service_of_call
+from nl2robot.wire import LANGUAGE, NAME, SHA256, service, service_of_call
 from robot_api.errors import AccessDenied
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
@@ -26,9 +26,12 @@ from sandbox.limits import MAX_PROGRAM
 EVENTS: Final[Mapping[str, str]] = {
     "fleet": "members and errands, as fleet.list tells them, when something has changed; at most"
     " five times a second",
+    "fleet.plans": "nothing more: something of the appointments of the fleet is another, which the"
+    " method of this name lists",
 }
 WAITS: Final = 60.0
 """Seconds that `fleet.wait` waits at most."""
+_PROGRAM: Final = {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM}
 _ID: Final = {"type": "string", "pattern": "^[0-9a-f]{16}$"}
 
 
@@ -51,10 +54,7 @@ def approved(
         raise AccessDenied(
             "The program was changed after its review. Review it again, then approve it."
         )
-    # As it would be done here, if this robot can do it; else as far as that can be told.
-    made = runner.check(program, language)
-    if not made.acceptable:
-        made = review(program, Knowledge(runner.knowledge.world), language=language)
+    made = check_for_all(runner, program, language)
     errors = [each for each in made.findings if each.severity == "error"]
     if errors:
         raise AccessDenied(
@@ -97,17 +97,22 @@ class FleetTold(TypedDict):
 
     members: list[MemberTold]
     errands: list[Errand]
+    trouble: dict[str, str] | None
 
 
 def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
     """The methods to register with a `robot_api.server.Server`."""
 
     def listed(p: Mapping[str, Any]) -> dict[str, Any]:
-        return {"members": fleet.members(), "errands": fleet.errands()}
+        return {
+            "members": fleet.members(),
+            "errands": fleet.errands(),
+            "trouble": fleet.trouble_told(),
+        }
 
     def ran(p: Mapping[str, Any], context: Context) -> Errand:
         # Whoever has no account may call themselves anything, but not what somebody is called.
-        wanted = fleet.one(p["robot"]) if "robot" in p else None
+        wanted = fleet.fit(p["robot"], p["program"]) if "robot" in p else None
         errand = approved(
             runner,
             fleet,
@@ -139,9 +144,30 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             listed,
             "List the robots of the fleet as this one has heard of them, and what it has given"
             " them to do, the newest first. `heard` is how many seconds ago by the clock here; one"
-            " that is not `known` may stand any way.",
+            " that is not `known` may stand any way. `trouble`: why the fleet is not reached, by"
+            " language, if it is not.",
             observes=True,
             result=FleetTold,
+        ),
+        "fleet.plans": service(
+            lambda p: fleet.keeping.plans(p.get("language", "en")),
+            "List the appointments of the fleet: each is kept by the robot where it was made, which"
+            " has it handed out at its time to the one that does it best. Of one whose keeper is"
+            " not `known`, `planned.unknown` is the last time of which nobody knows whether it was"
+            " done. `planned.next` is when it is done if its keeper is there then.",
+            {"language": LANGUAGE},
+            observes=True,
+            result=list[Kept],
+        ),
+        "fleet.fit": service(
+            lambda p: fleet.fit(p["robot"], p["program"]),
+            "Tell the id of the robot of that name or id. Refuses one that is none of the fleet,"
+            " has another floor, or lacks a method that the program calls; whether it is free now"
+            " is nothing to this.",
+            {"robot": NAME, "program": _PROGRAM},
+            "robot program",
+            observes=True,
+            result=str,
         ),
         "fleet.run": service_of_call(
             ran,
@@ -149,7 +175,7 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             " that does it best, or by the `robot` of that name or id. That robot reviews it again"
             " before it begins. Returns what is to be done, which `fleet.wait` waits for.",
             {
-                "program": {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM},
+                "program": _PROGRAM,
                 "sha256": SHA256,
                 "by": NAME,
                 "sentence": {"type": "string", "maxLength": MAX_TEXT},

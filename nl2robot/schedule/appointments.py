@@ -6,6 +6,7 @@ from typing import Any, Final, Literal
 
 import msgspec
 
+from nl2robot.schedule.outcomes import Outcome
 from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.triggers import Trigger
 
@@ -15,9 +16,10 @@ begun (claimed); its program runs; or what came of it. "skipped" was not wanted,
 and not done, "asked" was not done because somebody has to approve it anew."""
 OVER: Final = ("done", "failed", "skipped", "missed", "asked")
 
-Why = Literal["ended", "changed"]
+Why = Literal["ended", "changed", "moved"]
 """Why an appointment waits for a new approval: the last one held until then; the review came out
-another way than the one that was approved."""
+another way than the one that was approved; it is one of a fleet that another robot kept, or this
+one before it lost its book of the fleet."""
 
 NoticeKind = Literal[
     "missed",
@@ -30,6 +32,7 @@ NoticeKind = Literal[
     "refused",
     "failed",
     "broken_off",
+    "moved",
     "reminder_no",
     "reminder_unclear",
     "reminder_silent",
@@ -71,7 +74,10 @@ class Appointment(msgspec.Struct, frozen=True, kw_only=True):
     trigger: Trigger | None
     """What begins it instead; None for one by the clock."""
     robot: str
-    """Its name, as its capabilities tell it; no other robot does it."""
+    """Its name, as its capabilities tell it; no other robot does it, unless it is the fleet's."""
+    fleet: str | None = None
+    """Of one that any robot of the fleet may do: the id in the fleet of the robot that keeps it,
+    and hands it out. None: it is its robot's own."""
     approved_by: str
     approved_at: float
     approved_until: float
@@ -112,6 +118,11 @@ class Occurrence(msgspec.Struct, frozen=True, kw_only=True):
     ended: float | None
     waited_for: str | None
     """What it last waited for, a word of `nl2robot.schedule.clerk.Waits`."""
+    done_by: str | None = None
+    """The name of the robot of the fleet that begins it, if that is another program's business than
+    this one's: `run` is then None."""
+    reminded: tuple[Outcome, ...] = ()
+    """What that robot tells of it, if it reminded somebody."""
 
 
 class Notice(msgspec.Struct, frozen=True, kw_only=True):

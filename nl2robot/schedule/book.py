@@ -11,7 +11,7 @@ from __future__ import annotations
 import sqlite3
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
@@ -22,63 +22,19 @@ from nl2robot.errors import UserError
 from nl2robot.private_database import private_database
 from nl2robot.run.process import lives, own_process
 from nl2robot.schedule.appointments import Appointment, Notice, NoticeKind, Occurrence, State, Why
+from nl2robot.schedule.outcomes import Outcome
 from nl2robot.schedule.rhythm import Rhythm
+from nl2robot.schedule.tables import (
+    SCHEMA,
+    VERSION,
+    appointment_of,
+    as_json,
+    missing_columns,
+    occurrence_of,
+)
 from nl2robot.schedule.triggers import Trigger
 from robot_api.errors import cause
 
-_VERSION: Final = 2
-_SCHEMA: Final = """
-CREATE TABLE IF NOT EXISTS appointments (
-    id INTEGER PRIMARY KEY AUTOINCREMENT,
-    program TEXT NOT NULL,
-    sha256 TEXT NOT NULL,            -- of exactly this program, which is what was approved
-    sentence TEXT NOT NULL,
-    plan TEXT,                       -- JSON
-    language TEXT NOT NULL,
-    rhythm TEXT,                     -- JSON, see nl2robot/schedule/rhythm.py
-    trigger TEXT,                    -- JSON, of one that something else than the clock begins
-    robot TEXT NOT NULL,
-    approved_by TEXT NOT NULL,
-    approved_at REAL NOT NULL,       -- seconds since the epoch, as all times here
-    approved_until REAL NOT NULL,
-    reviewed TEXT NOT NULL,          -- JSON, see nl2robot/schedule/findings.py
-    insists INTEGER NOT NULL DEFAULT 0,
-    priority INTEGER NOT NULL,
-    makes_up INTEGER NOT NULL,       -- minutes
-    paused INTEGER NOT NULL DEFAULT 0,
-    asked TEXT,                      -- why it waits for a new approval
-    added REAL NOT NULL,
-    removed REAL,
-    looked REAL NOT NULL             -- until then all times are in `occurrences`
-);
-CREATE TABLE IF NOT EXISTS occurrences (
-    id INTEGER PRIMARY KEY AUTOINCREMENT,
-    appointment INTEGER NOT NULL REFERENCES appointments(id),
-    due REAL NOT NULL,
-    state TEXT NOT NULL,
-    run INTEGER,
-    note TEXT,
-    process INTEGER,                 -- that claimed it, see nl2robot/run/process.py
-    began REAL,
-    ended REAL,
-    waited_for TEXT,
-    UNIQUE (appointment, due)
-);
-CREATE INDEX IF NOT EXISTS open_occurrences ON occurrences (state)
-    WHERE state IN ('due', 'claimed', 'running');
-CREATE TABLE IF NOT EXISTS keepers (
-    robot TEXT PRIMARY KEY,
-    process INTEGER NOT NULL         -- that looks after its appointments
-);
-CREATE TABLE IF NOT EXISTS notices (
-    id INTEGER PRIMARY KEY AUTOINCREMENT,
-    time REAL NOT NULL,
-    kind TEXT NOT NULL,
-    appointment INTEGER NOT NULL,
-    occurrence INTEGER,
-    parts TEXT NOT NULL              -- JSON
-);
-"""
 _LARGEST: Final = 2**63 - 1
 
 
@@ -105,9 +61,10 @@ class Book:
             self._db = private_database(path)
             self._db.execute("PRAGMA secure_delete=ON")  # what is deleted can be read nowhere
             [version] = self._db.execute("PRAGMA user_version").fetchone()
-            if version < _VERSION:
+            if version < VERSION:
                 self._db.executescript(
-                    f"BEGIN IMMEDIATE; {_SCHEMA} PRAGMA user_version = {_VERSION}; COMMIT;"
+                    f"BEGIN IMMEDIATE; {SCHEMA} {missing_columns(self._db)}"
+                    f" PRAGMA user_version = {VERSION}; COMMIT;"
                 )
 
     def close(self) -> None:
@@ -167,6 +124,7 @@ class Book:
         trigger: Trigger | None = None,
         plan: str | None = None,
         insists: bool = False,
+        fleet: str | None = None,
     ) -> Appointment:
         """Note an approved program with its times; they count from now on."""
         now = self._clock()
@@ -176,9 +134,10 @@ class Book:
             "sentence": sentence,
             "plan": plan,
             "language": language,
-            "rhythm": _json(rhythm),
-            "trigger": _json(trigger),
+            "rhythm": as_json(rhythm),
+            "trigger": as_json(trigger),
             "robot": robot,
+            "fleet": fleet,
             "approved_by": approved_by,
             "approved_at": now,
             "approved_until": approved_until,
@@ -199,7 +158,7 @@ class Book:
     def appointments(self, robot: str | None = None, removed: bool = False) -> list[Appointment]:
         """Those of a robot, or all, by their numbers; `removed`: those too that are no more."""
         found = map(
-            _appointment,
+            appointment_of,
             self._read(
                 "SELECT * FROM appointments WHERE (? IS NULL OR robot = ?)"
                 " AND (? OR removed IS NULL) ORDER BY id",
@@ -215,14 +174,22 @@ class Book:
         )
         if not rows:
             raise NoAppointment(number)
-        return _appointment(rows[0])
+        return appointment_of(rows[0])
 
-    def approve(self, number: int, by: str, until: float, reviewed: str, insists: bool) -> None:
-        """Note that somebody approved it anew."""
+    def approve(
+        self,
+        number: int,
+        by: str,
+        until: float,
+        reviewed: str,
+        insists: bool,
+        fleet: str | None = None,
+    ) -> None:
+        """Note that somebody approved it anew; one of the fleet is that robot's to keep now."""
         self._write(
             "UPDATE appointments SET approved_by = ?, approved_at = ?, approved_until = ?,"
-            " reviewed = ?, insists = ?, asked = NULL WHERE id = ?",
-            *(by, self._clock(), until, reviewed, int(insists), number),
+            " reviewed = ?, insists = ?, fleet = ?, asked = NULL WHERE id = ?",
+            *(by, self._clock(), until, reviewed, int(insists), fleet, number),
         )
 
     def ask(self, number: int, why: Why) -> None:
@@ -271,14 +238,14 @@ class Book:
         return self.occurrence(int(cursor.lastrowid or 0)) if cursor.rowcount else None
 
     def occurrence(self, number: int) -> Occurrence:
-        return Occurrence(**self._read("SELECT * FROM occurrences WHERE id = ?", number)[0])
+        return occurrence_of(self._read("SELECT * FROM occurrences WHERE id = ?", number)[0])
 
     def of_moment(self, appointment: int, due: float) -> Occurrence | None:
         """What is known of that time of an appointment."""
         rows = self._read(
             "SELECT * FROM occurrences WHERE appointment = ? AND due = ?", appointment, due
         )
-        return Occurrence(**rows[0]) if rows else None
+        return occurrence_of(rows[0]) if rows else None
 
     def skipped_from(self, appointment: int, moment: float) -> list[Occurrence]:
         """The times from a moment on that somebody has called off beforehand."""
@@ -287,14 +254,14 @@ class Book:
             " ORDER BY due",
             *(appointment, moment),
         )
-        return [Occurrence(**row) for row in rows]
+        return [occurrence_of(row) for row in rows]
 
     def waiting(self, robot: str) -> list[tuple[Occurrence, Appointment]]:
         """What is due of a robot and not begun: by priority, then by time."""
         known = {each.id: each for each in self.appointments(robot)}
         rows = self._read("SELECT * FROM occurrences WHERE state = 'due'")
         found = [
-            (Occurrence(**row), known[row["appointment"]])
+            (occurrence_of(row), known[row["appointment"]])
             for row in rows
             if row["appointment"] in known
         ]
@@ -321,12 +288,21 @@ class Book:
             occurrence,
         )
 
-    def runs(self, occurrence: int, run: int) -> None:
-        """Note that its program runs, and as which run of the log."""
+    def runs(self, occurrence: int, run: int | None) -> None:
+        """Note that its program runs, and as which run of the log; None: of another robot's."""
         self._write(
             "UPDATE occurrences SET state = 'running', run = ? WHERE id = ? AND state = 'claimed'",
             *(run, occurrence),
         )
+
+    def done_by(self, occurrence: int, robot: str | None) -> None:
+        """Note which robot of the fleet was told to begin it."""
+        self._write("UPDATE occurrences SET done_by = ? WHERE id = ?", robot, occurrence)
+
+    def reminded(self, occurrence: int, found: Sequence[Outcome]) -> None:
+        """Note what a robot of the fleet tells of a reminder."""
+        told = as_json(msgspec.to_builtins(found))
+        self._write("UPDATE occurrences SET reminded = ? WHERE id = ?", told, occurrence)
 
     def end(self, occurrence: int, state: State, note: str | None = None) -> bool:
         """Note what came of it; False if that is known already."""
@@ -342,7 +318,7 @@ class Book:
         known = {each.id: each for each in self.appointments(robot, removed=True)}
         rows = self._read("SELECT * FROM occurrences WHERE state IN ('claimed', 'running')")
         return [
-            (Occurrence(**row), known[row["appointment"]])
+            (occurrence_of(row), known[row["appointment"]])
             for row in rows
             if row["appointment"] in known
         ]
@@ -364,7 +340,7 @@ class Book:
             "SELECT * FROM occurrences WHERE due >= ? ORDER BY due DESC, id DESC LIMIT ?",
             *(moment, last),
         )
-        return [Occurrence(**row) for row in rows]
+        return [occurrence_of(row) for row in rows]
 
     def call_back(self, appointment: int, due: float) -> bool:
         """Have a time to come done after all that was called off; False if it was not."""
@@ -383,14 +359,14 @@ class Book:
             " ORDER BY due DESC, id DESC LIMIT ?",
             *(appointment, appointment, last),
         )
-        return [Occurrence(**row) for row in rows]
+        return [occurrence_of(row) for row in rows]
 
     def between(self, begins: float, ends: float) -> list[Occurrence]:
         """The times from a moment on until before another that are in the book, in order."""
         rows = self._read(
             "SELECT * FROM occurrences WHERE due >= ? AND due < ? ORDER BY due, id", begins, ends
         )
-        return [Occurrence(**row) for row in rows]
+        return [occurrence_of(row) for row in rows]
 
     # --- what is to be told
 
@@ -405,7 +381,7 @@ class Book:
         cursor = self._write(
             "INSERT INTO notices (time, kind, appointment, occurrence, parts)"
             " VALUES (?, ?, ?, ?, ?)",
-            *(self._clock(), kind, appointment, occurrence, _json(dict(parts or {}))),
+            *(self._clock(), kind, appointment, occurrence, as_json(dict(parts or {}))),
         )
         return self.notices(int(cursor.lastrowid or 0) - 1, 1)[0]
 
@@ -480,20 +456,3 @@ class Book:
                 f"The book of appointments {self.path} cannot be used ({cause(error)})."
                 " Free some disk space or check the folder's rights, then try again."
             ) from error
-
-
-def _json(value: Any) -> str | None:
-    return None if value is None else msgspec.json.encode(value).decode()
-
-
-def _appointment(row: Mapping[str, Any]) -> Appointment:
-    rhythm, trigger = row["rhythm"], row["trigger"]
-    return Appointment(
-        **{
-            **row,
-            "rhythm": msgspec.json.decode(rhythm, type=Rhythm) if rhythm else None,
-            "trigger": msgspec.json.decode(trigger, type=Trigger) if trigger else None,
-            "insists": bool(row["insists"]),
-            "paused": bool(row["paused"]),
-        }
-    )

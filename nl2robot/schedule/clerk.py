@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import itertools
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Final, Literal
 
 import msgspec
@@ -43,9 +43,23 @@ from nl2robot.schedule.outcomes import ACTED_ON, Outcome, Result, worst
 from nl2robot.schedule.quiet import QuietHours
 from nl2robot.schedule.rhythm import next_time, times
 
-Waits = Literal["busy", "driven", "charging", "stopped", "lost", "quiet", "turn"]
+Waits = Literal[
+    "busy",
+    "driven",
+    "charging",
+    "stopped",
+    "lost",
+    "quiet",
+    "turn",
+    "going",
+    "fleet",
+    "doubled",
+]
 """What something waits for: a program runs; somebody drives by hand; it has to charge; it was
-stopped just now, or stops; it cannot be reached; quiet hours; another one begins first."""
+stopped just now, or stops; it cannot be reached; quiet hours; another one begins first.
+
+Of what any robot of the fleet may do: it is still being done; the robot that keeps it has joined no
+fleet; another robot goes by that robot's id."""
 
 ON_TIME: Final = 60.0
 """Seconds after its time until which it is no matter that nobody looked."""
@@ -96,9 +110,17 @@ class Clerk:
         """By appointment: of which end of its approval it is known that it was told before."""
         self._told = self._newest_notice()
 
-    def look(self, now: float, waits_for: Waits | None = None) -> Begin | None:
+    def look(
+        self,
+        now: float,
+        waits_for: Waits | None = None,
+        fleet_waits: Waits | None = "fleet",
+        going: Collection[int] = (),
+    ) -> Begin | None:
         """Write down what came since the last look, and what came of it; returns what to begin.
-        `waits_for`: why the robot begins nothing now, None if it is free."""
+        `waits_for`: why the robot begins nothing now, None if it is free. `fleet_waits`: why
+        nothing is handed out to its fleet. `going`: the numbers of the appointments that the fleet
+        is busy with."""
         appointments = self._book.appointments(self._robot)
         for each in appointments:
             self._look_at_approval(each, now)
@@ -108,13 +130,24 @@ class Clerk:
         for number in gone:
             del self._next[number]
             self._ends.pop(number, None)
-        return self._choose(now, waits_for)
+
+        def stands(appointment: Appointment) -> Waits | None:
+            if appointment.fleet is None:
+                return waits_for
+            return fleet_waits or ("going" if appointment.id in going else None)
+
+        return self._choose(now, stands)
 
     def next_look(self, now: float) -> float | None:
         """When the next time comes, in seconds since the epoch, as far as is known from the last
         look; None if none does. What waits is looked at sooner."""
         known = [moment for _, moment in self._next.values() if moment is not None]
         return min(known, default=None)
+
+    def latest(self, occurrence: Occurrence, appointment: Appointment) -> float:
+        """Until when it may be begun, in seconds since the epoch."""
+        waits = self._settings.waits if appointment.trigger is None else WAITS_FOR_ROBOT
+        return occurrence.due + max(waits, appointment.makes_up * 60.0)
 
     # --- what became of what was begun
 
@@ -136,6 +169,31 @@ class Clerk:
                 self._book.ask(begin.appointment.id, "changed")
                 parts = msgspec.to_builtins(news)
                 self._tell("changed", begin.appointment, begin.occurrence, news=parts)
+
+    def nobody(
+        self, occurrence: Occurrence, appointment: Appointment, refused: Mapping[str, str]
+    ) -> None:
+        """No robot of the fleet took it in time, as those say that were asked, by name."""
+        self._miss("missed", occurrence, appointment, "nobody", refused=dict(refused))
+
+    def called_off(self, occurrence: Occurrence, appointment: Appointment, why: str | None) -> None:
+        """No robot of the fleet was told to begin it, and none will be; None: somebody called it
+        off."""
+        if why == "overtaken":
+            self._miss("overtaken", occurrence, appointment, why)
+        elif why == "doubled":
+            self._miss("missed", occurrence, appointment, why)
+        elif why is not None and why == appointment.asked:
+            self._book.end(occurrence.id, "asked", why)
+        else:
+            self._book.end(occurrence.id, "skipped", why or "unwanted")
+
+    def moved(self, appointment: Appointment) -> None:
+        """It is one of a fleet that another robot kept: not this one's to hand out, before somebody
+        approves it for that."""
+        with self._book.at_once():
+            self._book.ask(appointment.id, "moved")
+            self._tell("moved", appointment)
 
     def runs(self, occurrence: Occurrence, run: int) -> None:
         self._book.runs(occurrence.id, run)
@@ -276,12 +334,12 @@ class Clerk:
             return None
         return appointment.asked
 
-    def _choose(self, now: float, waits_for: Waits | None) -> Begin | None:
-        waiting = list(self._not_too_late(now, waits_for))
-        if waits_for is None and self._settings.quiet and self._settings.quiet.cover(now):
-            waits_for = "quiet"
+    def _choose(self, now: float, stands: Callable[[Appointment], Waits | None]) -> Begin | None:
+        waiting = list(self._not_too_late(now, stands))
+        quiet = self._settings.quiet is not None and self._settings.quiet.cover(now)
         begin = None
         for occurrence, appointment in waiting:
+            waits_for = stands(appointment) or ("quiet" if quiet else None)
             if begin is None and waits_for is None:
                 if self._book.claim(occurrence.id):
                     begin = Begin(self._book.occurrence(occurrence.id), appointment)
@@ -290,7 +348,7 @@ class Clerk:
         return begin
 
     def _not_too_late(
-        self, now: float, waits_for: Waits | None
+        self, now: float, stands: Callable[[Appointment], Waits | None]
     ) -> Iterator[tuple[Occurrence, Appointment]]:
         """What waits, and may still: by priority, then by time."""
         latest: dict[int, float] = defaultdict(float)
@@ -298,16 +356,14 @@ class Clerk:
         for occurrence, appointment in waiting:
             latest[appointment.id] = max(latest[appointment.id], occurrence.due)
         for occurrence, appointment in waiting:
-            waits = self._settings.waits if appointment.trigger is None else WAITS_FOR_ROBOT
-            most = max(waits, appointment.makes_up * 60.0)
             if appointment.paused:
                 self._book.end(occurrence.id, "skipped", "paused")
             elif appointment.asked is not None:
                 self._book.end(occurrence.id, "asked", appointment.asked)
             elif occurrence.due < latest[appointment.id]:
                 self._miss("overtaken", occurrence, appointment, "overtaken")
-            elif now - occurrence.due > most:
-                why = occurrence.waited_for or waits_for or "nobody_looked"
+            elif now > self.latest(occurrence, appointment):
+                why = occurrence.waited_for or stands(appointment) or "nobody_looked"
                 self._miss("missed", occurrence, appointment, why)
             else:
                 yield occurrence, appointment
@@ -318,10 +374,11 @@ class Clerk:
         occurrence: Occurrence,
         appointment: Appointment,
         why: str,
+        **parts: object,
     ) -> None:
         with self._book.at_once():
             if self._book.end(occurrence.id, "missed", why):
-                self._tell(kind, appointment, occurrence, why=why)
+                self._tell(kind, appointment, occurrence, why=why, **parts)
 
     def _tell_reminders(
         self, found: Sequence[Outcome], appointment: Appointment, occurrence: Occurrence

@@ -95,8 +95,9 @@ class _Record:
         if asking is None:
             return
         run = self.log.run(time.run) if self.log is not None and time.run is not None else None
-        came = self._came(run) if time.state in OVER else []
-        broken_off = time.state == "failed" and time.run is not None
+        came = list(time.reminded) or (self._came(run) if time.state in OVER else [])
+        begun = time.run is not None or time.done_by is not None
+        broken_off = time.state == "failed" and begun
         state: Became = "broken_off" if broken_off else time.state
         for each, became, told in [
             *((each, each.result, self.words[each.result]) for each in came),
@@ -107,7 +108,7 @@ class _Record:
                 due=time.due,
                 result=became,
                 told=told,
-                robot=kept.robot,
+                robot=time.done_by or kept.robot,
                 approved_by=_approved_by(run) or kept.approved_by,
                 sentence=kept.sentence,
                 appointment=kept.id,

@@ -31,6 +31,7 @@ from nl2robot.schedule.appointments import (
 )
 from nl2robot.schedule.book import Book, BookError
 from nl2robot.schedule.findings import encoded, findings_of
+from nl2robot.schedule.handing import Company
 from nl2robot.schedule.rhythm import Rhythm, checked, local, next_begin, next_time, times
 from nl2robot.schedule.telling import outcome, told, trouble, when
 from nl2robot.schedule.triggers import Trigger
@@ -45,6 +46,10 @@ SHOWN: Final = 5
 HOLDS_AT_MOST: Final = 366 * DAY
 MOST: Final = 500
 """Appointments of a robot."""
+MOST_OF_FLEET: Final = 100
+"""Of those, the ones that it keeps for its fleet: all its robots are told of them."""
+OF_ANYBODY: Final = ("message", "pressed", "scanned")
+"""What may begin something that another robot does."""
 _A_DAY_AT_MOST: Final = 300
 """Times of one day; a rhythm has fewer."""
 
@@ -113,6 +118,8 @@ class Schedule:
         self._check = check
         self.noticed = noticed
         self.clock = clock
+        self.company: Company | None = None
+        """The robot's fleet, if it has joined one."""
         self._book: Book | None = None
         self._lock = threading.Lock()
 
@@ -152,9 +159,11 @@ class Schedule:
         makes_up: int = 0,
         until: float | None = None,
         insists: bool = False,
+        fleet: bool = False,
     ) -> Appointment:
         """Approve exactly this program for those times, until then (30 days if nobody says).
-        `insists`: though it does not come to its end when it is tried. Raises `AccessDenied` for a
+        `insists`: though it does not come to its end when it is tried. `fleet`: by any robot of the
+        fleet. Raises `AccessDenied` for a
         program that cannot be approved so, `UserError` for times that cannot be."""
         if (rhythm is None) == (trigger is None):
             raise UserError("An appointment has a rhythm or a trigger. Give one of them.")
@@ -165,6 +174,11 @@ class Schedule:
                 raise UserError("That time is over. Choose one that is still to come.")
         if trigger is not None:
             trigger = self.noticed(trigger)
+            if fleet and trigger.what not in OF_ANYBODY:
+                raise UserError(
+                    "What a robot notices of itself and around it, it sees to itself. Have it done"
+                    " by this robot, or choose a message, a code or a button."
+                )
         if not PRIORITIES[0] <= priority <= PRIORITIES[1]:
             raise UserError(f"A priority is {PRIORITIES[0]} to {PRIORITIES[1]}. Choose another.")
         if not 0 <= makes_up <= MAKES_UP_AT_MOST:
@@ -174,10 +188,17 @@ class Schedule:
             )
         until, robot = self._until(until, now), self.robot
         assert robot is not None
-        review = self._reviewed(program, sha256, language, insists, rhythm)
+        company = self._of_fleet() if fleet else None
+        review = self._reviewed(program, sha256, language, insists, rhythm, company)
         book = self._open()
-        if len(book.appointments(robot)) >= MOST:
+        kept = book.appointments(robot)
+        if len(kept) >= MOST:
             raise UserError(f"This robot has {MOST} appointments. Remove some first.")
+        if fleet and sum(each.fleet is not None for each in kept) >= MOST_OF_FLEET:
+            raise UserError(
+                f"This robot keeps {MOST_OF_FLEET} appointments of the fleet. Remove some first, or"
+                " make it at another robot."
+            )
         return book.add(
             program=program,
             sha256=sha256,
@@ -193,6 +214,7 @@ class Schedule:
             trigger=trigger,
             plan=plan,
             insists=insists,
+            fleet=company.id if company is not None else None,
         )
 
     def approve(
@@ -206,8 +228,15 @@ class Schedule:
         """Approve an appointment anew, as it is reviewed now. Raises as `add` does."""
         book, kept = self._kept(number)
         until = self._until(until, self.clock())
-        review = self._reviewed(kept.program, sha256, kept.language, insists, kept.rhythm)
-        book.approve(number, by, until, encoded(findings_of(review)), insists)
+        company = self._of_fleet() if kept.fleet is not None else None
+        review = self._reviewed(kept.program, sha256, kept.language, insists, kept.rhythm, company)
+        keeper = company.id if company is not None else None
+        with book.at_once():
+            if keeper != kept.fleet:  # what another robot handed out is not followed here
+                for occurrence, appointment in book.begun(kept.robot):
+                    if appointment.id == number:
+                        book.end(occurrence.id, "failed", "broken_off")
+            book.approve(number, by, until, encoded(findings_of(review)), insists, keeper)
         return book.appointment(number)
 
     # --- changing one
@@ -327,15 +356,27 @@ class Schedule:
             raise UserError(f"Appointment {number} is one of {kept.robot}. Change it there.")
         return book, kept
 
+    def _of_fleet(self) -> Company:
+        if self.company is None:
+            raise UserError("This robot has joined no fleet. Serve it with --fleet NAME.")
+        return self.company
+
     def _reviewed(
-        self, program: str, sha256: str, language: str, insists: bool, rhythm: Rhythm | None
+        self,
+        program: str,
+        sha256: str,
+        language: str,
+        insists: bool,
+        rhythm: Rhythm | None,
+        company: Company | None = None,
     ) -> Review:
         """A review of a program that may be approved, as it would go the next time."""
         if digest(program) != sha256:
             raise AccessDenied(
                 "The program was changed after its review. Review it again, then approve it."
             )
-        review = self._check(program, language, at=next_begin(rhythm, self.clock()))
+        check = company.check if company is not None else self._check
+        review = check(program, language, at=next_begin(rhythm, self.clock()))
         errors = [each for each in review.findings if each.severity == "error"]
         if errors:
             raise AccessDenied(

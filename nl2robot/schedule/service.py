@@ -28,9 +28,10 @@ from nl2robot.schedule.appointments import Appointment, Occurrence
 from nl2robot.schedule.book import Book
 from nl2robot.schedule.clerk import Begin, Clerk, Settings, Waits
 from nl2robot.schedule.findings import decoded, findings_of, news
+from nl2robot.schedule.handing import Handing
 from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
-from nl2robot.schedule.schedule import FILE, Schedule
+from nl2robot.schedule.schedule import FILE, Checks, Schedule
 from nl2robot.schedule.telling import told, trouble
 from nl2robot.schedule.triggers import Trigger, checked, of_others, possible
 from nl2robot.texts import texts_in
@@ -55,8 +56,9 @@ EVENTS: Final[Mapping[str, str]] = {
     " lists them",
     "notice": "id (null if the book of appointments cannot be written), time, kind (missed |"
     " missed_many | overtaken | waits | ends_soon | ended |"
-    " changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent |"
-    " reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had"
+    " changed | refused | failed | broken_off | moved | reminder_no | reminder_unclear |"
+    " reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder"
+    " that somebody had"
     " said at once, and of trouble), occurrence, parts, told (the sentence by language): what"
     " somebody has to know who was not looking",
 }
@@ -119,6 +121,7 @@ class Timekeeper:
         self._timing = timing
         self._publish = publish
         self._clerk: Clerk | None = None
+        self._handing: Handing | None = None
         self._over = threading.Event()
         self._soon = threading.Event()
         self._lookout = Lookout(ask, timing.clock, listen, self._soon.set)
@@ -179,8 +182,9 @@ class Timekeeper:
         robot = self._schedule.robot
         if book is None or robot is None:
             return
-        if self._clerk is None:
+        if self._clerk is None or self._handing is None:
             self._clerk = Clerk(book, robot, self._timing.settings)
+            self._handing = Handing(book, robot, self._clerk, self._schedule.company)
         if reminded is not None and not book.has_run(reminded[0].id):
             run, found = reminded
             self._clerk.reminded(run.id, run.started, run.utterance or "", found)
@@ -191,8 +195,10 @@ class Timekeeper:
                 f" of {robot!r} in this data folder, so this one begins none. End one of the two,"
                 " or give this one a data folder of its own with NL2ROBOT_HOME."
             )
+        going = self._handing.look()
         for occurrence, appointment in book.begun(robot):
-            self._follow(self._clerk, book, occurrence, appointment)
+            if appointment.fleet is None:
+                self._follow(self._clerk, book, occurrence, appointment)
         free, charging = self._waits() is None, self._runner.present.state.charging
         self._lookout.look(book, book.appointments(robot), free, charging)
         if self._lookout.buttons != self._buttons:
@@ -201,10 +207,14 @@ class Timekeeper:
                 each: at for each, at in self._pressed.items() if each in self._buttons
             }
             self._publish("schedule.buttons", {"buttons": self._buttons})
-        begin = self._clerk.look(self._timing.clock(), self._waits())
+        waits = self._handing.waits
+        begin = self._clerk.look(self._timing.clock(), self._waits(), waits, going)
         self._tell(book)
         if begin is not None:
-            self._perform(self._clerk, begin)
+            if begin.appointment.fleet is not None:
+                self._hand_out(self._clerk, self._handing, begin)
+            else:
+                self._perform(self._clerk, begin)
             self._tell(book)
         self._forget(book)
 
@@ -234,10 +244,7 @@ class Timekeeper:
         """Review it again, and begin it if that finds what was approved."""
         kept = begin.appointment
         try:
-            found = findings_of(self._runner.check(kept.program, kept.language))
-            new = news(decoded(kept.reviewed), found)
-            if new:
-                clerk.changed(begin, new)
+            if self._changed(clerk, begin, self._runner.check):
                 return
             if self._waits() is not None or self._over.is_set():  # somebody was quicker, or stopped
                 clerk.not_begun(begin)
@@ -261,6 +268,29 @@ class Timekeeper:
             clerk.not_begun(begin)
         except (AccessDenied, RobotError) as error:
             clerk.refused(begin, str(error))
+
+    def _hand_out(self, clerk: Clerk, handing: Handing, begin: Begin) -> None:
+        """Review it again, and have the fleet do it if that finds what was approved."""
+        company = self._schedule.company
+        assert company is not None
+        try:
+            if not self._changed(clerk, begin, company.check):
+                handing.hand_out(begin)
+        except (NotPossible, LostConnection) as error:
+            _log.info("appointment %s waits: %s", begin.appointment.id, error)
+            clerk.not_begun(begin)
+        except (AccessDenied, RobotError) as error:
+            clerk.refused(begin, str(error))
+
+    @staticmethod
+    def _changed(clerk: Clerk, begin: Begin, check: Checks) -> bool:
+        """Whether its review finds something that was not there when it was approved."""
+        kept = begin.appointment
+        found = findings_of(check(kept.program, kept.language))
+        new = news(decoded(kept.reviewed), found)
+        if new:
+            clerk.changed(begin, new)
+        return bool(new)
 
     def _follow(
         self, clerk: Clerk, book: Book, occurrence: Occurrence, appointment: Appointment
@@ -331,6 +361,8 @@ class Timekeeper:
                 if each.occurrence.state in ("due", "claimed", "running")
             ]
             self._publish("schedule", {"open": going})
+            if self._handing is not None:
+                self._handing.tell(self._timing.clock())
 
     def _tell_trouble(self, sentence: str) -> None:
         """Once, until it is over."""

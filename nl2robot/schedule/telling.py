@@ -9,6 +9,7 @@ import msgspec
 
 from grammar.language import languages
 from nl2robot.schedule.appointments import Appointment, Notice, Occurrence
+from nl2robot.schedule.rhythm import Rhythm
 from nl2robot.schedule.triggers import ANYBODY, MINUTE, Trigger
 from nl2robot.schedule.words import a_moment, in_words, passing
 from nl2robot.sentences import in_language
@@ -41,6 +42,12 @@ def told(notice: Notice, language: str = "en", zone: str = _UTC) -> str:
     if "why" in parts:
         named = texts["waits_for" if notice.kind == "waits" else "whys"]
         parts["why"] = named.get(parts["why"], parts["why"])
+        refused = (
+            f"{name}: {_sentence(said, language)}"
+            for name, said in parts.get("refused", {}).items()
+        )
+        if told := " ".join(refused):
+            parts["why"] = f"{parts['why']} ({told.rstrip('.')})"
     if "news" in parts:
         found = (
             str(texts["news"][each["kind"]]).format(text=_sentence(each["text"], language))
@@ -65,15 +72,23 @@ def outcome(occurrence: Occurrence, language: str = "en") -> str:
         note = texts["whys"].get(note, note)
     elif note is not None:
         note = texts["notes"].get(note) or _sentence(note, language)
+    if occurrence.done_by is not None:
+        by = str(texts["by_robot"]).format(robot=occurrence.done_by)
+        state = f"{state}, {by}"
     return f"{state}: {note}" if note else state
 
 
 def when(appointment: Appointment, language: str = "en") -> str:
     """At what times it is done, in words."""
-    if appointment.rhythm is None:
-        assert appointment.trigger is not None
-        return happening(appointment.trigger, language)
-    return in_words(appointment.rhythm, language)
+    return when_of(appointment.rhythm, appointment.trigger, language)
+
+
+def when_of(rhythm: Rhythm | None, trigger: Trigger | None, language: str = "en") -> str:
+    """As `when`; one of the two is given."""
+    if rhythm is None:
+        assert trigger is not None
+        return happening(trigger, language)
+    return in_words(rhythm, language)
 
 
 def happening(trigger: Trigger, language: str = "en") -> str:

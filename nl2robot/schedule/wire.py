@@ -118,7 +118,8 @@ def schedule_services(
             " out) and a `rule` of RFC 5545, or none for once. Of those that wait the one with the"
             " highest `priority` begins first. What was missed while the server was not running is"
             " made up for within `makes_up` minutes. Before each time it is reviewed again; if that"
-            " finds something new, it waits for a new approval.",
+            " finds something new, it waits for a new approval. With `fleet` any robot of the fleet"
+            " may do it: this one keeps it, and has it handed out at its time.",
             {
                 "program": {"type": "string", "maxLength": LONGEST_PROGRAM},
                 "sha256": SHA256,
@@ -136,6 +137,7 @@ def schedule_services(
                 "makes_up": {"type": "integer", "minimum": 0, "maximum": MAKES_UP_AT_MOST},
                 "until": _TIME,
                 "insists": {"type": "boolean"},
+                "fleet": {"type": "boolean"},
             },
             "program sha256 by sentence",
             result=Appointment,

@@ -371,6 +371,8 @@ def _open(
     talks = Talks()
     proposals = Proposals(runner, publish)
     company = Fleet(fleet, runner, connect) if fleet is not None else None
+    if company is not None:
+        schedule.company = company.keeping
     attention = Attention()
     microphones = Microphones(
         lambda: runner.knowledge, talks.of, give_way, publish, runner.think, schedule
@@ -474,7 +476,7 @@ def _open(
         with server:
             runner.present.begin()
             try:
-                with house or nullcontext(), keeper or nullcontext(), company or nullcontext():
+                with house or nullcontext(), company or nullcontext(), keeper or nullcontext():
                     yield server
             finally:
                 runner.close()

@@ -12,6 +12,7 @@ from playwright.sync_api import Page, expect
 
 from nl2robot.fleet.key import make_key
 from tests.console.conftest import Look, Picture, Served, serving
+from tests.console.test_desk import say
 from tests.console.test_looks import CONTRAST, STICKS_OUT, nameless
 
 
@@ -84,6 +85,33 @@ def test_both_are_on_one_map_and_the_nearest_does_what_was_approved(
     expect(page.locator(".fleet-told")).to_contain_text("Ada stands.")
     expect(page.locator(".fleet-told")).to_contain_text("Ben stands.")
     expect(card).to_contain_text("Stopped")
+
+
+def test_an_appointment_for_the_best_of_the_fleet_is_seen_at_both_consoles(
+    look: Look, served: Served, ben: Served, picture: Picture
+) -> None:
+    page = look("/")
+    say(page, "go to the pharmacy and say good morning")
+    page.get_by_role("button", name="Later …").click()
+    form = page.locator("dialog.times-form")
+    form.locator("select[name=robot]").select_option("any")
+    form.get_by_role("button", name="Approve for these times").click()
+    expect(form).to_have_count(0)
+    page.goto(served.url + "/schedule")
+    expect(page.locator(".appointment.card")).to_contain_text("any of the fleet; this one keeps it")
+    page = fleet(look)
+    expect(page.locator(".plan")).to_contain_text("go to the pharmacy")
+    page = fleet(look, url=ben.url, width=390, height=844, language="de", dark=True)
+    plan = page.locator(".plan")
+    expect(plan).to_contain_text("Geführt von Ada")
+    expect(plan).to_contain_text("jeden Tag um")
+    plan.scroll_into_view_if_needed()
+    picture(page, "fleet-plans")
+    page.goto(ben.url + "/schedule")
+    expect(page.locator(".of-fleet .plan")).to_contain_text("Geführt von Ada")
+    with served.robot() as robot:
+        robot.request("schedule.remove", {"id": 1})
+    expect(page.locator(".of-fleet .plan")).to_have_count(0)
 
 
 @pytest.mark.parametrize(("language", "width", "dark"), [("de", 320, True), ("fr", 1024, False)])

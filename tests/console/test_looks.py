@@ -3,13 +3,15 @@ for those who see little and those who use no mouse."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.console.conftest import Look, Served
+from nl2robot.fleet.key import make_key
+from tests.console.conftest import Look, Served, serving
 from tests.console.test_desk import say
 
 CONTRAST = (Path(__file__).parent / "contrast.js").read_text(encoding="utf-8")
@@ -28,6 +30,7 @@ READY = {
     "/routines": ".routines[data-ready=yes]",
     "/schedule": "#schedule[data-ready=yes]",
     "/runs": "[data-part=found]",
+    "/fleet": "#fleet[data-ready=yes]",
     "/devices": "#devices .card",
 }
 SCREENS = {
@@ -35,6 +38,15 @@ SCREENS = {
     "fr": [(844, 390, False), (1024, 768, False), (1440, 900, True)],
 }
 """For each language: width, height, dark."""
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """With all pages that there are: also of the fleet."""
+    home = tmp_path_factory.mktemp("home")
+    make_key(home / "fleet.key")
+    with serving(home, "--fleet", "Ada") as served:
+        yield served
 
 
 def drawn(page: Page) -> None:
@@ -109,7 +121,7 @@ def test_nothing_that_people_write_becomes_part_of_a_page(look: Look, served: Se
     with served.robot() as robot:
         robot.request("zones.set", {"name": evil, "polygon": [[1, 1], [2, 1], [2, 2]]})
         robot.show(text=evil)
-        for path in ("/map", "/drive", "/routines", "/schedule", "/runs", "/face"):
+        for path in ("/map", "/drive", "/routines", "/schedule", "/runs", "/fleet", "/face"):
             page.goto(served.url + path)
             expect(page.locator("body")).to_contain_text("STOP")
             page.wait_for_load_state("networkidle")

@@ -16,9 +16,12 @@ from nl2robot.fleet.performing import Performer
 from nl2robot.fleet.trust import Station
 from nl2robot.review.review import digest
 from nl2robot.schedule.findings import Findings, encoded
+from nl2robot.schedule.outcomes import Outcome
 
 KEY = b"the key of the ward, which nobody else has"
 FLOOR = "ward"
+EIGHT = 1796022000.0 - 1000.0
+"""So that a story begins at eight in Zurich, on Monday, 30 November 2026."""
 NOTHING_FOUND = encoded(
     Findings(
         findings=(),
@@ -49,7 +52,7 @@ class FakeRobot:
         **about: Any,
     ) -> None:
         self.net, self.name, self.x = net, name, x
-        self.book = FleetBook(":memory:")
+        self.book = FleetBook(about.pop("book", ":memory:"))
         self.id = self.book.robot
         self.about = About(
             name=name,
@@ -64,6 +67,8 @@ class FakeRobot:
         self.runs: list[Offer] = []
         """All that it has begun in its life."""
         self.over: dict[int, str] = {}
+        self.reminders: dict[int, tuple[Outcome, ...]] = {}
+        """What came of its runs that reminded somebody."""
         self.stood: list[str] = []
         self.dies_at: str | None = None
         """ "note" or "run": it is killed as soon as that was done for something that begins."""
@@ -82,6 +87,7 @@ class FakeRobot:
             send=lambda to, raw, *, urgent: self.net.sent(self, to, raw),
             deeds=Deeds(ordered=self._ordered, stopped=self._stopped),
             sign=lambda robot, order: self.station.signed(self.id, robot, order),
+            clock=lambda: self.wall,
         )
         self.performer = Performer(
             self.book, self.hub.sealer.session, self, lambda: self.net.now + self.drift
@@ -95,6 +101,11 @@ class FakeRobot:
         answer = self.performer.answer(sender, order)
         assert answer is not None
         return answer
+
+    @property
+    def wall(self) -> float:
+        """What its clock shows, in seconds since the epoch."""
+        return EIGHT + self.net.now + self.drift
 
     def _ordered(self, sender: str, order: Order) -> None:
         try:
@@ -127,6 +138,9 @@ class FakeRobot:
 
     def came(self, run: int) -> tuple[str | None, str | None]:
         return self.over.get(run), None
+
+    def reminded(self, run: int) -> tuple[Outcome, ...]:
+        return self.reminders.get(run, ())
 
     def lost(self, offer: Offer) -> int | None:
         return next((n for n, each in enumerate(self.runs, 1) if each.id == offer.id), None)

@@ -37,7 +37,8 @@ def part(backstage: Backstage) -> Part:
         @ui.page("/schedule")
         def schedule() -> None:
             with frame(backstage, "schedule") as visit:
-                visit.hand_over({"words": dict(visit.words)})
+                fleet = backstage.fleet is not None
+                visit.hand_over({"words": dict(visit.words), "fleet": fleet})
                 ui.add_head_html(_HEAD)
                 title, intro = (escape(visit.words[key]) for key in ("title", "intro"))
                 ui.html(

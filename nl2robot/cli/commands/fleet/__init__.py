@@ -1,4 +1,4 @@
-"""`nl2robot fleet`: several robots at once: list them, give one something to do, stop them."""
+"""`nl2robot fleet`: several robots: list, give one something to do, call that off, stop."""
 
 from nl2robot.cli.commands.fleet.command import add_arguments, run
 

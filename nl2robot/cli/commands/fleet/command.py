@@ -16,18 +16,23 @@ from nl2robot.cli.options.values import read_program, user_name, words
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.fleet.book import Errand
+from nl2robot.fleet.keeping import Kept
 from nl2robot.fleet.key import fingerprint, fleet_key, make_key
 from nl2robot.fleet.trust import Station, distrust, trusted
 from nl2robot.fleet.trust import trust as trust_station
 from nl2robot.fleet.wire import WAITS, Told
 from nl2robot.paths import data_folder
 from nl2robot.plain import visible
+from nl2robot.schedule.rhythm import local
 from nl2robot.station.clients import client_of
 from robot_api.client import Robot
 from robot_api.errors import InvalidCall
+from robot_api.local_time import local_zone
 from robot_api.server import DEFAULT_PORT
 
-ACTIONS: Final = ("list", "run", "stop", "key", "trust", "distrust")
+ACTIONS: Final = ("list", "run", "call-off", "stop", "key", "trust", "distrust")
+SHORT: Final = 6
+"""Letters of an id by which an errand is told apart."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,9 +41,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "words",
         nargs="?",
         type=words,
-        metavar="WORDS|ROBOT",
-        help="run: what one of them should do; stop: the only one to be stopped; trust, distrust:"
-        " the name of a station",
+        metavar="WORDS|ID|ROBOT",
+        help="run: what one of them should do (Ctrl-C calls it off, or stops the robot that does"
+        " it); call-off: what no robot was told to begin yet, by its id in the list; stop: the only"
+        " one to be stopped; trust, distrust: the name of a station",
     )
     parser.add_argument("--program", metavar="FILE", help="run: this program instead of words")
     parser.add_argument("--station", metavar="KEY", help="trust: the key of that station")
@@ -65,16 +71,19 @@ def run(options: argparse.Namespace) -> int:
         return _trust(options, terminal)
     trust(options)
     with client_of(options.robot, options.token) as robot:
-        _check_fleet(robot, options.robot)
+        check_fleet(robot, options.robot)
         if options.action == "run":
             return _run(options, terminal, Operator(robot, user_name()))
+        if options.action == "call-off":
+            return _call_off(options, terminal, robot)
         if options.action == "stop":
             return _stop(options, terminal, robot)
         _list(options, terminal, robot)
         return ExitStatus.OK
 
 
-def _check_fleet(robot: Robot, address: str) -> None:
+def check_fleet(robot: Robot, address: str) -> None:
+    """Raises `UserError` if that robot has joined no fleet."""
     try:
         robot.request("fleet.list", {})
     except InvalidCall as error:  # it knows no such method
@@ -110,9 +119,13 @@ def _trust(options: argparse.Namespace, terminal: Terminal) -> int:
 def _list(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> None:
     found = robot.request("fleet.list", {})
     if options.json:
-        print(json.dumps(found, ensure_ascii=False))
+        plans = msgspec.to_builtins(_plans(robot, options.lang))
+        print(json.dumps({**found, "plans": plans}, ensure_ascii=False))
         return
     words = terminal.words
+    if found.get("trouble"):
+        told = found["trouble"].get(options.lang) or found["trouble"]["en"]
+        terminal.console.print(visible(told), markup=False, soft_wrap=True)
     table = terminal.table(*words["fleet"])
     for each in found["members"]:
         standing = each["standing"] or {}
@@ -130,12 +143,66 @@ def _list(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> None
         table = terminal.table(*words["errands"])
         for errand in errands:
             table.add_row(
+                errand.id[:SHORT],
                 visible(errand.sentence or errand.program.splitlines()[0]),
                 _errand_state(errand, words),
                 visible(errand.robot_name or ""),
                 visible(errand.by),
             )
         terminal.console.print(table, markup=False)
+    _list_plans(options, terminal, robot)
+
+
+def _list_plans(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> None:
+    """The appointments that any robot of the fleet may do."""
+    kept = _plans(robot, options.lang)
+    if not kept:
+        return
+    words = terminal.words
+    terminal.console.print()
+    table = terminal.table(*words["fleet_plans"])
+    for each in kept:
+        plan = each.planned.plan
+        states = words["appointment_states"]
+        state = states["asked"] if plan.asked else states["paused"] if plan.paused else ""
+        if each.planned.unknown is not None:
+            told = words["fleet_plan_unknown"].format(
+                robot=each.name, due=_when(each.planned.unknown)
+            )
+        else:
+            told = each.planned.told
+        table.add_row(
+            visible(each.planned.when),
+            state or (_when(each.planned.next[0]) if each.planned.next else ""),
+            visible(plan.sentence),
+            words["fleet_here"] if each.here else visible(each.name),
+            visible(plan.approved_by),
+            visible(told),
+        )
+    terminal.console.print(table, markup=False)
+
+
+def _plans(robot: Robot, language: str) -> list[Kept]:
+    return msgspec.convert(robot.request("fleet.plans", {"language": language}), list[Kept])
+
+
+def _when(moment: float) -> str:
+    return f"{local(moment, local_zone()):%Y-%m-%d %H:%M}"
+
+
+def _call_off(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> int:
+    if not options.words:
+        raise UserError("Say by its id what is to be called off; `nl2robot fleet` lists it.")
+    errands = msgspec.convert(robot.request("fleet.list", {})["errands"], list[Errand])
+    found = [each for each in errands if each.id.startswith(options.words)]
+    if len(found) != 1:
+        raise UserError(
+            f"There is no single errand whose id begins with {options.words!r}. `nl2robot fleet`"
+            " lists those there are, with their ids."
+        )
+    robot.request("fleet.call_off", {"errand": found[0].id})
+    terminal.console.print(terminal.words["errand_states"]["called_off"], markup=False)
+    return ExitStatus.OK
 
 
 def _members(robot: Robot) -> list[dict[str, Any]]:
@@ -178,6 +245,8 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
         program = translated.program
     else:
         raise UserError("Say what one of the robots should do, or give a --program.")
+    if options.on:  # before anybody reads it
+        operator.robot.request("fleet.fit", {"robot": options.on, "program": program})
     review = operator.check(program, options.lang)
     terminal.show_review(review)
     here = next(each for each in _members(operator.robot) if each["here"])

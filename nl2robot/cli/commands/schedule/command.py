@@ -11,6 +11,7 @@ from typing import Any, Final
 
 import msgspec
 
+from nl2robot.cli.commands.fleet.command import check_fleet
 from nl2robot.cli.commands.run import open_session
 from nl2robot.cli.commands.schedule.books import Distant, book_of
 from nl2robot.cli.commands.schedule.record import show_reminders
@@ -90,6 +91,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="MINUTES",
         help="within how many minutes it is still done if the server was not running (default: 0)",
     )
+    adding.add_argument(
+        "--fleet",
+        action="store_true",
+        help="by any robot of the fleet, the best one then; --robot names the server that keeps it",
+    )
     adding.add_argument("-y", "--yes", action="store_true", help="approve without being asked")
     parser.add_argument("--on", metavar="DATE", help="skip: this day, instead of what comes next")
     parser.add_argument("--back", action="store_true", help="skip: have that day done after all")
@@ -153,6 +159,8 @@ def _add(options: argparse.Namespace, robot: Chosen) -> int:
     program = read_program(options.program) if options.program is not None else None
     now = datetime.now()
     with open_session(options, robot, approve_all=options.yes) as (session, _):
+        if options.fleet:  # before anybody reads it
+            check_fleet(session.operator.robot, options.robot)
         if not by_options:
             return _in_words(session, " ".join(said), options)
         wish = Wish(
@@ -193,7 +201,9 @@ def _in_words(session: Session, sentence: str, options: argparse.Namespace) -> i
 
 def _more(options: argparse.Namespace) -> dict[str, Any]:
     until = end_of(options.until, local_zone()) if options.until is not None else None
-    return {"until": until, "priority": options.priority, "makes_up": options.make_up}
+    fleet = True if options.fleet else None  # which older servers do not know
+    more = {"until": until, "priority": options.priority, "makes_up": options.make_up}
+    return {**more, "fleet": fleet}
 
 
 def _approve(options: argparse.Namespace, robot: Chosen, number: int) -> int:
@@ -285,7 +295,7 @@ def _show(terminal: Terminal, listed: Sequence[Listed], as_json: bool) -> None:
             _next(terminal, each),
             visible(kept.sentence),
             visible(kept.approved_by),
-            visible(kept.robot),
+            terminal.words["any_robot"] if kept.fleet is not None else visible(kept.robot),
         )
     terminal.console.print(table, markup=False)
 

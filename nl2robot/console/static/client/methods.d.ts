@@ -1292,6 +1292,7 @@ export interface Methods {
             every?: number;
           } | null;
           robot: string;
+          fleet?: string | null;
           approved_by: string;
           approved_at: number;
           approved_until: number;
@@ -1300,7 +1301,7 @@ export interface Methods {
           priority: number;
           makes_up: number;
           paused: boolean;
-          asked: ('changed' | 'ended') | null;
+          asked: ('changed' | 'ended' | 'moved') | null;
           added: number;
           removed: number | null;
           looked: number;
@@ -1315,7 +1316,7 @@ export interface Methods {
       }[];
     };
     /**
-     * Approve exactly the program with this SHA-256 for a rhythm, or for a trigger, `until` then (seconds since the epoch; 30 days if it is not said). `rhythm`: `begins`, a local time as 2026-11-30T08:00, `zone` as Europe/Zurich (the server's if it is left out) and a `rule` of RFC 5545, or none for once. Of those that wait the one with the highest `priority` begins first. What was missed while the server was not running is made up for within `makes_up` minutes. Before each time it is reviewed again; if that finds something new, it waits for a new approval.
+     * Approve exactly the program with this SHA-256 for a rhythm, or for a trigger, `until` then (seconds since the epoch; 30 days if it is not said). `rhythm`: `begins`, a local time as 2026-11-30T08:00, `zone` as Europe/Zurich (the server's if it is left out) and a `rule` of RFC 5545, or none for once. Of those that wait the one with the highest `priority` begins first. What was missed while the server was not running is made up for within `makes_up` minutes. Before each time it is reviewed again; if that finds something new, it waits for a new approval. With `fleet` any robot of the fleet may do it: this one keeps it, and has it handed out at its time.
      */
     add: {
       params: {
@@ -1343,6 +1344,7 @@ export interface Methods {
         makes_up?: number;
         until?: number | null;
         insists?: boolean;
+        fleet?: boolean;
       };
       /**
        * An approved program with a time, a rhythm or an event at which it is done. Times are seconds
@@ -1370,6 +1372,7 @@ export interface Methods {
           every?: number;
         } | null;
         robot: string;
+        fleet?: string | null;
         approved_by: string;
         approved_at: number;
         approved_until: number;
@@ -1378,7 +1381,7 @@ export interface Methods {
         priority: number;
         makes_up: number;
         paused: boolean;
-        asked: ('changed' | 'ended') | null;
+        asked: ('changed' | 'ended' | 'moved') | null;
         added: number;
         removed: number | null;
         looked: number;
@@ -1421,6 +1424,7 @@ export interface Methods {
           every?: number;
         } | null;
         robot: string;
+        fleet?: string | null;
         approved_by: string;
         approved_at: number;
         approved_until: number;
@@ -1429,7 +1433,7 @@ export interface Methods {
         priority: number;
         makes_up: number;
         paused: boolean;
-        asked: ('changed' | 'ended') | null;
+        asked: ('changed' | 'ended' | 'moved') | null;
         added: number;
         removed: number | null;
         looked: number;
@@ -1466,6 +1470,7 @@ export interface Methods {
           every?: number;
         } | null;
         robot: string;
+        fleet?: string | null;
         approved_by: string;
         approved_at: number;
         approved_until: number;
@@ -1474,7 +1479,7 @@ export interface Methods {
         priority: number;
         makes_up: number;
         paused: boolean;
-        asked: ('changed' | 'ended') | null;
+        asked: ('changed' | 'ended' | 'moved') | null;
         added: number;
         removed: number | null;
         looked: number;
@@ -1511,6 +1516,7 @@ export interface Methods {
           every?: number;
         } | null;
         robot: string;
+        fleet?: string | null;
         approved_by: string;
         approved_at: number;
         approved_until: number;
@@ -1519,7 +1525,7 @@ export interface Methods {
         priority: number;
         makes_up: number;
         paused: boolean;
-        asked: ('changed' | 'ended') | null;
+        asked: ('changed' | 'ended' | 'moved') | null;
         added: number;
         removed: number | null;
         looked: number;
@@ -1613,6 +1619,17 @@ export interface Methods {
           began: number | null;
           ended: number | null;
           waited_for: string | null;
+          done_by?: string | null;
+          /** Items: What came of reminding one person. */
+          reminded?: {
+            person: string;
+            result: 'away' | 'broken_off' | 'gone' | 'no' | 'silent' | 'unclear' | 'yes';
+            what?: string;
+            said?: number | null;
+            place?: string | null;
+            question?: string;
+            answer?: string | null;
+          }[];
         };
         sentence: string;
         told: string;
@@ -1706,6 +1723,7 @@ export interface Methods {
             | 'failed'
             | 'missed'
             | 'missed_many'
+            | 'moved'
             | 'overtaken'
             | 'refused'
             | 'reminder_away'
@@ -1981,7 +1999,7 @@ export interface Methods {
   };
   fleet: {
     /**
-     * List the robots of the fleet as this one has heard of them, and what it has given them to do, the newest first. `heard` is how many seconds ago by the clock here; one that is not `known` may stand any way.
+     * List the robots of the fleet as this one has heard of them, and what it has given them to do, the newest first. `heard` is how many seconds ago by the clock here; one that is not `known` may stand any way. `trouble`: why the fleet is not reached, by language, if it is not.
      */
     list: {
       params: Record<string, never>;
@@ -2001,6 +2019,7 @@ export interface Methods {
           by: string;
           reviewed: string;
           at: number;
+          until?: number | null;
           wanted?: string | null;
           state?: string;
           offer?: string | null;
@@ -2012,6 +2031,16 @@ export interface Methods {
           refused?: {
             [k: string]: string;
           };
+          /** Items: What came of reminding one person. */
+          reminded?: {
+            person: string;
+            result: 'away' | 'broken_off' | 'gone' | 'no' | 'silent' | 'unclear' | 'yes';
+            what?: string;
+            said?: number | null;
+            place?: string | null;
+            question?: string;
+            answer?: string | null;
+          }[];
         }[];
         /**
          * Items: A robot of the fleet as this one has heard of it; `heard`: seconds ago by the clock here.
@@ -2044,11 +2073,99 @@ export interface Methods {
             because?: string | null;
             driven_by?: string | null;
             zones?: string;
+            plans?: string | null;
             waits?: string | null;
           } | null;
           twin: boolean;
         }[];
+        trouble: {
+          [k: string]: string;
+        } | null;
       };
+    };
+    /**
+     * List the appointments of the fleet: each is kept by the robot where it was made, which has it handed out at its time to the one that does it best. Of one whose keeper is not `known`, `planned.unknown` is the last time of which nobody knows whether it was done. `planned.next` is when it is done if its keeper is there then.
+     */
+    plans: {
+      params: {
+        language?: string;
+      };
+      /** Items: An appointment of the fleet, and who keeps it. */
+      result: {
+        robot: string;
+        name: string;
+        here: boolean;
+        known: boolean;
+        /** A plan as it is shown. */
+        planned: {
+          /**
+           * An appointment of the fleet. Times are seconds since the epoch, by its keeper's clock.
+           */
+          plan: {
+            number: number;
+            sentence: string;
+            language: string;
+            rhythm: {
+              begins: string;
+              zone: string;
+              rule?: string | null;
+            } | null;
+            trigger: {
+              what: 'battery' | 'heard' | 'message' | 'place' | 'pressed' | 'scanned' | 'seen';
+              text?: string;
+              thing?: string;
+              place?: string;
+              topic?: string;
+              below?: number;
+              every?: number;
+            } | null;
+            approved_by: string;
+            approved_until: number;
+            paused: boolean;
+            asked: ('changed' | 'ended' | 'moved') | null;
+            off: number[];
+            looked: number;
+            latest: {
+              id: number;
+              appointment: number;
+              due: number;
+              state:
+                'asked' | 'claimed' | 'done' | 'due' | 'failed' | 'missed' | 'running' | 'skipped';
+              run: number | null;
+              note: string | null;
+              process: number | null;
+              began: number | null;
+              ended: number | null;
+              waited_for: string | null;
+              done_by?: string | null;
+              /** Items: What came of reminding one person. */
+              reminded?: {
+                person: string;
+                result: 'away' | 'broken_off' | 'gone' | 'no' | 'silent' | 'unclear' | 'yes';
+                what?: string;
+                said?: number | null;
+                place?: string | null;
+                question?: string;
+                answer?: string | null;
+              }[];
+            } | null;
+          };
+          when: string;
+          next: number[];
+          unknown: number | null;
+          told: string;
+        };
+      }[];
+    };
+    /**
+     * Tell the id of the robot of that name or id. Refuses one that is none of the fleet, has another floor, or lacks a method that the program calls; whether it is free now is nothing to this.
+     */
+    fit: {
+      params: {
+        robot: string;
+        program: string;
+      };
+      result: string;
     };
     /**
      * Approve exactly the program with this SHA-256, for one run by the robot of the fleet that does it best, or by the `robot` of that name or id. That robot reviews it again before it begins. Returns what is to be done, which `fleet.wait` waits for.
@@ -2072,6 +2189,7 @@ export interface Methods {
         by: string;
         reviewed: string;
         at: number;
+        until?: number | null;
         wanted?: string | null;
         state?: string;
         offer?: string | null;
@@ -2083,6 +2201,16 @@ export interface Methods {
         refused?: {
           [k: string]: string;
         };
+        /** Items: What came of reminding one person. */
+        reminded?: {
+          person: string;
+          result: 'away' | 'broken_off' | 'gone' | 'no' | 'silent' | 'unclear' | 'yes';
+          what?: string;
+          said?: number | null;
+          place?: string | null;
+          question?: string;
+          answer?: string | null;
+        }[];
       };
     };
     /**
@@ -2103,6 +2231,7 @@ export interface Methods {
         by: string;
         reviewed: string;
         at: number;
+        until?: number | null;
         wanted?: string | null;
         state?: string;
         offer?: string | null;
@@ -2114,6 +2243,16 @@ export interface Methods {
         refused?: {
           [k: string]: string;
         };
+        /** Items: What came of reminding one person. */
+        reminded?: {
+          person: string;
+          result: 'away' | 'broken_off' | 'gone' | 'no' | 'silent' | 'unclear' | 'yes';
+          what?: string;
+          said?: number | null;
+          place?: string | null;
+          question?: string;
+          answer?: string | null;
+        }[];
       };
     };
     /** Have something not done that no robot was told to begin yet. */
@@ -2131,6 +2270,7 @@ export interface Methods {
         by: string;
         reviewed: string;
         at: number;
+        until?: number | null;
         wanted?: string | null;
         state?: string;
         offer?: string | null;
@@ -2142,6 +2282,16 @@ export interface Methods {
         refused?: {
           [k: string]: string;
         };
+        /** Items: What came of reminding one person. */
+        reminded?: {
+          person: string;
+          result: 'away' | 'broken_off' | 'gone' | 'no' | 'silent' | 'unclear' | 'yes';
+          what?: string;
+          said?: number | null;
+          place?: string | null;
+          question?: string;
+          answer?: string | null;
+        }[];
       };
     };
     /**
@@ -3307,7 +3457,7 @@ export interface Events {
    */
   'schedule.buttons': any;
   /**
-   * id (null if the book of appointments cannot be written), time, kind (missed | missed_many | overtaken | waits | ends_soon | ended | changed | refused | failed | broken_off | reminder_no | reminder_unclear | reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once, and of trouble), occurrence, parts, told (the sentence by language): what somebody has to know who was not looking
+   * id (null if the book of appointments cannot be written), time, kind (missed | missed_many | overtaken | waits | ends_soon | ended | changed | refused | failed | broken_off | moved | reminder_no | reminder_unclear | reminder_silent | reminder_away | reminder_gone | trouble), appointment (0: of a reminder that somebody had said at once, and of trouble), occurrence, parts, told (the sentence by language): what somebody has to know who was not looking
    */
   notice: any;
   /**
@@ -3318,6 +3468,10 @@ export interface Events {
    * members and errands, as fleet.list tells them, when something has changed; at most five times a second
    */
   fleet: any;
+  /**
+   * nothing more: something of the appointments of the fleet is another, which the method of this name lists
+   */
+  'fleet.plans': any;
   /**
    * time, x, y (metres), theta (degrees), speed (m/s), place, way [[x, y]] ahead, lidar [centimetres], people [[name, kind, x, y, theta, posture]], things that were moved [[number, x, y, holder: name | true for the robot | null]], closed [numbers of doors], holding [names]; at most 12 a second, once `scene.floor` was called
    */

@@ -4,22 +4,28 @@ import {appears, element, filled, pageData} from '/static/page.js';
 import {notice} from '/static/console.js';
 import {wire} from '/static/wire.js';
 import {FleetMap} from './map.js';
+import {planCards} from './plans.js';
 import {mountSending} from './sending.js';
 
 const {words, language, role, unknownAfter} = pageData;
 const LOOKS_EVERY = 1000;
+const ASKS_EVERY = 5000;
 
 const root = await appears('#fleet');
 const stopAll = element('button', {type: 'button', class: 'button danger stop-all', title: words.stop_all_hint}, words.stop_all);
 const told = element('ul', {class: 'fleet-told', role: 'status'});
 const cards = element('ul', {class: 'robots'});
 const given = element('ul', {class: 'errands'});
+const planned = element('ul', {class: 'plans'});
+const trouble = element('p', {class: 'card warn fleet-trouble', role: 'status', hidden: true});
 const drawn = element('div', {class: 'fleet-map'});
 root.append(
   element('div', {class: 'row fleet-stop'}, stopAll, told),
+  trouble,
   element('section', {class: 'card', 'aria-labelledby': 'fleet-map-title'}, element('h2', {id: 'fleet-map-title'}, words.map), drawn),
   element('section', {'aria-labelledby': 'robots-title'}, element('h2', {id: 'robots-title'}, words.robots), cards),
   element('section', {class: 'card', 'aria-labelledby': 'errands-title'}, element('h2', {id: 'errands-title'}, words.errands), given),
+  element('section', {class: 'card', 'aria-labelledby': 'plans-title'}, element('h2', {id: 'plans-title'}, words.plans), planned),
 );
 const map = new FleetMap(drawn, words);
 let members = [];
@@ -99,9 +105,19 @@ function show() {
 
 function take(found) {
   ({members, errands} = found);
+  trouble.textContent = found.trouble?.[language] ?? '';
+  trouble.hidden = !found.trouble;
   at = performance.now();
   show();
   root.dataset.ready = 'yes';
+}
+
+/** Also when nothing was said: whether a keeper is heard of is told by its silence. */
+async function takePlans() {
+  const kept = await wire.request('fleet.plans', {language}).catch(() => null);
+  if (!kept) return;
+  const cards = planCards(kept, {words, language});
+  planned.replaceChildren(...(cards.length ? cards : [element('li', {class: 'muted'}, words.no_plans)]));
 }
 
 async function stopThem(whom) {
@@ -121,10 +137,13 @@ async function stopThem(whom) {
 
 stopAll.addEventListener('click', () => stopThem({}));
 wire.subscribe('fleet', take);
+wire.subscribe('fleet.plans', takePlans);
 wire.onChange(async (connected) => {
   if (!connected) return;
   const [floor, found] = await Promise.all([wire.request('scene.floor', {language}).catch(() => null), wire.request('fleet.list')]);
   if (floor) map.draw(floor, language);
   take(found);
+  takePlans();
 });
 setInterval(show, LOOKS_EVERY);
+setInterval(() => document.hidden || takePlans(), ASKS_EVERY);

@@ -70,7 +70,7 @@ export class Appointments {
         ? [words.last, howOften(listed, words, (seconds) => this.moment(seconds))]
         : [words.next, next.length ? this.moment(next[0]) : words.no_next],
       [words.approved, filled(words.approved_by, {who: kept.approved_by, date: this.date(kept.approved_until)})],
-      [words.robot, kept.robot],
+      [words.robot, kept.fleet ? words.any_robot : kept.robot],
       [words.priority, String(kept.priority)],
       [kept.trigger ? words.form_waits : words.if_missed, kept.makes_up ? filled(words.made_up, {minutes: kept.makes_up}) : words.left_out],
     ];

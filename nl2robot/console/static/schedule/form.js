@@ -11,6 +11,7 @@ const A_MONDAY = '2026-11-30';
 const PRIORITIES = {first: 7, in_turn: 5, last: 3};
 const MAKES_UP = [30, 60, 120, 720]; // minutes
 const LONGEST_SENTENCE = 2000;
+const OF_ANYBODY = ['message', 'pressed', 'scanned'].map((kind) => `event-${kind}`).join(' '); // else it is about the robot itself
 const OF_EVENTS = ['said', ...EVENTS].map((kind) => `event-${kind}`).join(' ');
 
 /**
@@ -18,12 +19,13 @@ const OF_EVENTS = ['said', ...EVENTS].map((kind) => `event-${kind}`).join(' ');
  * `what`: program, sha256, sentence, insists, and times {when, rhythm} or {when, trigger} if some were said.
  */
 export async function askForTimes({wire, words, language, who, what}) {
-  const [{zone, today, at}, named] = await Promise.all([
+  const [{zone, today, at}, named, fleet] = await Promise.all([
     wire.request('schedule.week', {language}),
     wire.request('places.list').catch(() => []), // a robot whose places nobody knows
+    wire.request('fleet.list').then(() => true).catch(() => false), // one that has joined none
   ]);
   const places = named.map(({name}) => name);
-  const asked = new Form({wire, words, language, who, what, zone, today, at, places});
+  const asked = new Form({wire, words, language, who, what, zone, today, at, places, fleet});
   document.body.append(asked.dialog);
   asked.dialog.showModal();
   asked.form.querySelector('select, input').focus();
@@ -82,6 +84,7 @@ class Form {
     const turns = Object.entries(PRIORITIES).map(([name, value]) => element('option', {value}, words[`form_${name}`]));
     this.priority = element('select', {class: 'field'}, ...turns);
     this.priority.value = PRIORITIES.in_turn;
+    this.robot = element('select', {class: 'field', name: 'robot'}, ...['this', 'any'].map((each) => element('option', {value: each}, words[`form_robot_${each}`])));
     this.button = element('button', {type: 'submit', class: 'button primary'}, words.form_approve);
     const cancel = element('button', {type: 'button', class: 'button'}, words.form_cancel);
     cancel.addEventListener('click', () => this.dialog.close());
@@ -105,6 +108,7 @@ class Form {
       label(words.form_until, this.until, `said daily weekdays chosen passing ${OF_EVENTS}`),
       label(this.missedLabel, this.missed),
       label(words.form_priority, this.priority),
+      ...(this.fleet ? [label(words.form_robot, this.robot, `${ofTimes} ${OF_ANYBODY}`)] : []),
       element('label', {}, words.form_sentence, this.sentence, element('small', {class: 'muted'}, words.form_sentence_hint)),
       this.trouble,
       element('div', {class: 'row'}, this.button, cancel),
@@ -178,6 +182,7 @@ class Form {
         makes_up: Number(this.missed.value),
         until: endOf(once ? dayAfter(this.day.value, 1) : this.until.value, this.zone),
         insists: what.insists,
+        ...(this.fleet && !this.robot.disabled && this.robot.value === 'any' && {fleet: true}),
       });
       const listed = await wire.request('schedule.list', {language});
       const {when} = listed.find(({appointment}) => appointment.id === added.id) ?? {when: words.form_title};

@@ -5,6 +5,7 @@ import {notice} from '/static/console.js';
 import {notifies, notify} from '/static/notices.js';
 import {wire} from '/static/wire.js';
 import {Appointments} from '/static/schedule/appointments.js';
+import {planCards} from '/static/fleet/plans.js';
 import {showEvents} from '/static/schedule/events.js';
 import {Reminders} from '/static/schedule/reminders.js';
 import {showWeek} from '/static/schedule/week.js';
@@ -18,6 +19,7 @@ const week = element('section', {class: 'card week', 'aria-labelledby': 'week-ti
 const events = element('section', {class: 'card events', 'aria-labelledby': 'events-title', hidden: true});
 const record = element('section', {class: 'card reminders', 'aria-labelledby': 'reminders-title', hidden: true});
 const all = element('section', {'aria-labelledby': 'all-title'});
+const others = element('section', {class: 'card of-fleet', 'aria-labelledby': 'of-fleet-title', hidden: true});
 let day = null; // of the week that is shown; null: this one
 let at = 0;
 
@@ -71,6 +73,13 @@ function drawEvents(listed) {
   });
 }
 
+/** What other robots keep for the fleet: it is changed there. */
+function drawOthers(kept) {
+  const cards = planCards(kept.filter(({here}) => !here), {words, language});
+  others.hidden = cards.length === 0;
+  others.replaceChildren(element('h2', {id: 'of-fleet-title'}, words.of_fleet), element('ul', {class: 'plans'}, ...cards));
+}
+
 /** Fetch all of it anew, and draw what has changed. */
 async function refresh() {
   const number = (at += 1);
@@ -87,6 +96,7 @@ async function refresh() {
     if (now !== drawn) drawWeek();
     drawn = now;
     await reminders.refresh(found.zone);
+    if (pageData.fleet) drawOthers(await wire.request('fleet.plans', {language}));
     appointments.goToTheOneAsked(); // after the week above has its height
     root.dataset.ready = 'yes';
   } catch (error) {
@@ -111,9 +121,10 @@ function notifying() {
 const appointments = new Appointments(all, {wire, words, language, role, who: pageData.who, changed: refresh});
 const reminders = new Reminders(record, {wire, words, language});
 const looksOn = role === 'operator' ? [] : [element('p', {class: 'muted'}, words.looking_on)];
-root.replaceChildren(notifying(), ...looksOn, events, week, all, record);
+root.replaceChildren(notifying(), ...looksOn, events, week, all, others, record);
 narrow.addEventListener('change', drawWeek);
 wire.subscribe('schedule', refresh);
 wire.subscribe('notice', refresh);
+if (pageData.fleet) wire.subscribe('fleet.plans', refresh);
 wire.onChange((connected) => connected && refresh());
 setInterval(() => document.hidden || refresh(), LOOKS_EVERY);
