@@ -61,6 +61,7 @@ SEAMS = {
     "nl2robot.station.robot_check": "the check of a robot; `nl2robot robots` only lists them",
     "nl2robot.cli.commands.talk": "a conversation by voice, which `nl2robot chat` can be",
     "nl2robot.console.checker": "the pages, with NiceGUI; other checks do without",
+    "nl2robot.training.planner.train": "torch, which only learning needs",
     "nl2robot.assistant.server": "the protocol of assistants, in a package that need not be there",
     "nl2robot.cli.replaying": "the simulator; `nl2robot log` only lists runs",
     "nl2robot.cli.failures": "the errors of all layers in three languages, when there is one",

@@ -3,7 +3,7 @@
 The file (numpy's .npz) has two matrices for each product that was changed,
 `<layer>.<product>.down` (rank, columns) and `.up` (rows, rank): the product of x is then
 W x + `SCALE` up (down x). Each is kept in eight bits, with a number by which every row is
-multiplied, `<matrix>.scales`. Written by `nl2robot.training.planner.train`.
+multiplied, `<matrix>.scales`. Written by `nl2robot.training.planner`.
 """
 
 from __future__ import annotations

@@ -1,13 +1,10 @@
-"""How good the language model is on sentences that it has not learned from, and what its
-probabilities mean.
+"""What the probabilities of a planner mean.
 
     python -m nl2robot.training.planner.calibrate OUT.jsonl [--planner model] [--also FILE]
 
-Each held-out sentence of the corpus is planned as `nl2robot translate` would do it, and what the
-program does in a few scenes is compared with what the program of the corpus does there. OUT grows
-line by line and is gone on from. In the end a table is printed, and a logistic regression is
-fitted to one half and tried on the other; fitted to both it goes to `nl2robot/data/confidence.json`
-(`nl2robot.deliberation.confidence`).
+What became of sentences (`evaluate`; OUT grows line by line and is gone on from) is told in a
+table, and a logistic regression is fitted to one half of it and tried on the other; fitted to both
+it goes to `nl2robot/data/confidence.json` (`nl2robot.deliberation.confidence`).
 """
 
 from __future__ import annotations
@@ -15,29 +12,21 @@ from __future__ import annotations
 import argparse
 import json
 import random
-import time
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from grammar.normal import normal
-from grammar.planning.model.expansion import expanded
-from grammar.planning.model.prompt import vocabulary
-from grammar.planning.planner import Draft, Drafts, Watch
-from grammar.planning.turn import Turn
-from grammar.program_parser import NotAPlan
-from nl2robot.deliberation.confidence import WEIGHTS, features
-from nl2robot.deliberation.considering import consider
+from nl2robot.deliberation.confidence import WEIGHTS
 from nl2robot.deliberation.deciding import ACCEPTED
-from nl2robot.deliberation.voting import count, same
-from nl2robot.training.planner.corpus import Item, files, knowledge, load
+from nl2robot.training.planner.corpus import files, load
+from nl2robot.training.planner.evaluate import Row, measure, scores, table
 from nl2robot.training.planner.examples import is_held_out
-from nl2robot.translate.planners import planner
+from nl2robot.training.planner.export import file_digest
+from nl2robot.translate.planners import installed_model, learned, planner
 
 USED: Final = {
     "model": ("surest", "score", "branches", "hardly asked"),
@@ -51,93 +40,9 @@ nine of 47 that somebody has read. Of rules, that do less of what was not said, 
 PULL: Final = 5.0
 """How strongly weights are drawn towards nothing, of standardised features."""
 
-Measured = dict[str, Any]
-
-
-def measure(items: Sequence[Item], name: str, out: Path) -> list[Measured]:
-    """What became of each of these; what `out` holds already is not done again."""
-    known = [json.loads(line) for line in out.read_text().splitlines()] if out.exists() else []
-    done = {each["where"] for each in known}
-    with out.open("a") as written:
-        for item in items:
-            if item.where not in done:
-                began = time.monotonic()
-                each = {"where": item.where, "language": item.language, **_measured(item, name)}
-                each["seconds"] = round(time.monotonic() - began, 2)
-                known.append(each)
-                written.write(json.dumps(each, ensure_ascii=False) + "\n")
-                written.flush()
-    return known
-
-
-def _measured(item: Item, name: str) -> Measured:
-    turn = item.turn
-    answer = planner(name).plan(turn, Watch())
-    wanted = _wanted(item, turn)
-    told: Measured = {"say": item.say, "wanted": item.do, "way_out": wanted is None}
-    if not isinstance(answer, Drafts):
-        return {**told, "outcome": type(answer).__name__.lower(), "message": str(answer)}
-    told["drafts"] = [each.context.written for each in answer.drafts]
-    votes = count(turn, answer.drafts, knowledge(item.world))
-    if not votes.votes:
-        objections = [
-            f"{each.kind}: {each.about}" for it in votes.dropped for each in it.checked.objections
-        ]
-        return {**told, "outcome": "dropped", "objections": objections}
-    right = [wanted is not None and _does(turn, vote.first.draft, wanted) for vote in votes.votes]
-    return {
-        **told,
-        "outcome": "drafts",
-        "right": right,
-        "shares": [round(each.share, 4) for each in votes.votes],
-        "features": features(turn, votes.votes[0], votes),
-    }
-
-
-def _wanted(item: Item, turn: Turn) -> Draft | None:
-    """The program of the corpus as a draft; None for a way out."""
-    try:
-        plan = normal(expanded(item.do, vocabulary(turn).people, turn.lexicon, turn.language))
-    except NotAPlan:
-        return None
-    return Draft(plan, "corpus", 1.0, turn.context)
-
-
-def _does(turn: Turn, draft: Draft, wanted: Draft) -> bool:
-    """Whether a draft does what was wanted."""
-    one, other = consider(turn, draft), consider(turn, wanted)
-    return one is not None and other is not None and same(turn, one, other)
-
-
-# --- what it says
-
-
-def table(measured: Sequence[Measured]) -> Iterator[str]:
-    """Right, wrong and no programs, by language."""
-    for language in (*sorted({each["language"] for each in measured}), "all"):
-        mine = [each for each in measured if language in ("all", each["language"])]
-        counted = Counter(_outcome(each) for each in mine if not each["way_out"])
-        ways = [each for each in mine if each["way_out"]]
-        refused = sum(1 for each in ways if each["outcome"] != "drafts")
-        seconds = sorted(each["seconds"] for each in mine)
-        yield (
-            f"{language:4} {sum(counted.values()):4} programs: "
-            + ", ".join(f"{name} {number}" for name, number in sorted(counted.items()))
-            + f"; {refused} of {len(ways)} ways out; {seconds[len(seconds) // 2]} s median"
-        )
-
-
-def _outcome(each: Measured) -> str:
-    if each["outcome"] != "drafts":
-        return str(each["outcome"])
-    return "right" if each["right"][0] else "wrong, a vote right" if any(each["right"]) else "wrong"
-
-
-# --- what its probabilities mean
-
 
 def fitted(
-    measured: Sequence[Measured], used: Sequence[str], also_right: float = 0.0
+    measured: Sequence[Row], used: Sequence[str], also_right: float = 0.0
 ) -> dict[str, float]:
     """A logistic regression of whether the first vote was right; of those that do something else
     than the author's program, a share is right, too."""
@@ -157,13 +62,13 @@ def fitted(
     return {"bias": round(float(weights[0] - (slopes * middle).sum()), 5), **plain}
 
 
-def probability(weights: dict[str, float], each: Measured) -> float:
+def probability(weights: dict[str, float], each: Row) -> float:
     known = each["features"]
     total = sum(weight * known.get(name, 1.0) for name, weight in weights.items())
     return float(1 / (1 + np.exp(-total)))
 
 
-def tried(measured: Sequence[Measured], used: Sequence[str], also_right: float) -> Iterator[str]:
+def tried(measured: Sequence[Row], used: Sequence[str], also_right: float) -> Iterator[str]:
     """How true the probabilities are on halves that they were not fitted to."""
     halves = measured[::2], measured[1::2]
     told = [
@@ -184,6 +89,13 @@ def tried(measured: Sequence[Measured], used: Sequence[str], also_right: float) 
     yield f"shown from {ACCEPTED} on: {sum(shown):.0f} right, {len(shown) - sum(shown):.0f} wrong"
 
 
+def _learned() -> str:
+    """What the language model that is used here has learned, as `evaluate` notes it."""
+    folder = installed_model()
+    changes = learned(folder.name) if folder is not None else None
+    return file_digest(changes) if changes is not None else ""
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("out", type=Path)
@@ -193,11 +105,12 @@ def main() -> None:
     given = parser.parse_args()
     items = [item for item in load(files()) if given.planner != "model" or is_held_out(item)]
     random.Random(0).shuffle(items)
-    measured = measure(items[: given.most], given.planner, given.out)
-    print(*table(measured), sep="\n")
+    of = _learned() if given.planner == "model" else ""
+    measured = measure(items[: given.most], planner(given.planner), given.out, of)
+    print(*table(scores(measured, "language")), sep="\n")
     if given.also is not None:
         also = [json.loads(line) for line in given.also.read_text().splitlines()]
-        print("families:", *table(also), sep="\n")
+        print("families:", *table(scores(also, "language")), sep="\n")
         measured = [*measured, *also]
     drafted = [each for each in measured if each["outcome"] == "drafts"]
     random.Random(1).shuffle(drafted)

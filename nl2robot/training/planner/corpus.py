@@ -18,6 +18,7 @@ The programs are in the dialect of `grammar.planning.model`.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
@@ -98,3 +99,12 @@ def _item(file: Path, number: int, content: dict[str, Any], entry: dict[str, Any
 
 def files() -> list[Path]:
     return sorted(CORPUS.glob("*.yaml"))
+
+
+def digest() -> str:
+    """SHA-256 of the whole corpus: of its files and the worlds that they speak of, with their
+    names."""
+    hashed = hashlib.sha256()
+    for file in (*files(), *sorted(WORLDS.glob("*.yaml"))):
+        hashed.update(f"{file.name} {hashlib.sha256(file.read_bytes()).hexdigest()}\n".encode())
+    return hashed.hexdigest()

@@ -1,5 +1,4 @@
-"""The file that training reads: examples as tokens, so that a machine that trains needs neither
-the grammar nor the corpus."""
+"""The file that training reads: examples as tokens."""
 
 from __future__ import annotations
 
@@ -7,6 +6,8 @@ from pathlib import Path
 from typing import Self
 
 import msgspec
+
+from nl2robot.errors import UserError
 
 
 class Example(msgspec.Struct, frozen=True):
@@ -19,6 +20,8 @@ class Example(msgspec.Struct, frozen=True):
 
 
 class Examples(msgspec.Struct, frozen=True):
+    corpus: str
+    """The hash of the corpus that they were made from (`corpus.digest`)."""
     passes: list[list[Example]]
     """What is learned in each pass over the corpus."""
     unseen: list[Example]
@@ -28,7 +31,17 @@ class Examples(msgspec.Struct, frozen=True):
 
     @classmethod
     def load(cls, path: Path) -> Self:
-        return msgspec.msgpack.decode(path.read_bytes(), type=cls)
+        """Raises `UserError` if it is no file of examples."""
+        try:
+            return msgspec.msgpack.decode(path.read_bytes(), type=cls)
+        except msgspec.MsgspecError as error:
+            raise UserError(
+                f"{path} has no examples that this version can read. Delete it; `train` makes it"
+                " anew."
+            ) from error
 
     def save(self, path: Path) -> None:
-        path.write_bytes(msgspec.msgpack.encode(self))
+        """All or nothing."""
+        new = path.with_suffix(".new")
+        new.write_bytes(msgspec.msgpack.encode(self))
+        new.replace(path)

@@ -1,16 +1,14 @@
 """The language model in torch, with low-rank changes that are learned while its weights stay as
 they are (LoRA: Hu et al., arXiv:2106.09685).
 
-The weights are those of the GGUF file, as numbers: what is learned fits what runs. Sentences of
-different lengths stand one behind the other in a row; only attention knows where each begins.
+Sentences of different lengths stand one behind the other in a row; only attention knows where
+each begins.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
@@ -20,11 +18,10 @@ from torch.nn import functional
 
 from nl2robot.language_model.changes import SCALE
 from nl2robot.language_model.graph import CHANGED
-from nl2robot.language_model.weights import GgufFile, Sizes
+from nl2robot.language_model.weights import Floats
+from nl2robot.training.planner.installed import Installed
+from nl2robot.training.planner.recipe import RECIPE, Recipe
 
-RANK: Final = 16
-DROPPED: Final = 0.2
-"""The share of a change's inputs that is left out at each step of learning."""
 LONGEST: Final = 2048
 """Tokens of a text."""
 
@@ -33,13 +30,14 @@ class Product(nn.Module):
     """A product with fixed weights, and a change of low rank. What is learned is kept as floats
     of 32 bits, whatever the weights are."""
 
-    def __init__(self, weights: Tensor, bias: Tensor | None, rank: int) -> None:
+    def __init__(self, weights: Tensor, bias: Tensor | None, recipe: Recipe) -> None:
         super().__init__()
+        self.share_dropped = recipe.dropped
         self.weights = nn.Parameter(weights, requires_grad=False)
         self.bias = None if bias is None else nn.Parameter(bias, requires_grad=False)
         rows, columns = weights.shape
-        self.down = nn.Parameter(torch.randn(rank, columns) / columns**0.5)
-        self.up = nn.Parameter(torch.zeros(rows, rank))
+        self.down = nn.Parameter(torch.randn(recipe.rank, columns) / columns**0.5)
+        self.up = nn.Parameter(torch.zeros(rows, recipe.rank))
 
     def forward(self, x: Tensor) -> Tensor:
         y = functional.linear(x, self.weights, self.bias)
@@ -47,7 +45,7 @@ class Product(nn.Module):
         return y + SCALE * functional.linear(between, self.up.to(x.dtype))
 
     def dropped(self, x: Tensor) -> Tensor:
-        return functional.dropout(x, DROPPED, self.training)
+        return functional.dropout(x, self.share_dropped, self.training)
 
 
 @dataclass(frozen=True)
@@ -72,25 +70,26 @@ class Row:
 
 
 class Layer(nn.Module):
-    def __init__(self, file: GgufFile, number: int, rank: int, kind: torch.dtype) -> None:
+    def __init__(self, model: Installed, number: int, recipe: Recipe, kind: torch.dtype) -> None:
         super().__init__()
-        self.sizes = file.sizes
-        name = f"blk.{number}"
+        self.heads, self.kv_heads = model.heads
+        self.epsilon = model.epsilon
 
-        def product(*which: str) -> Product:
-            weights = np.concatenate([_dense(file, f"{name}.{each}.weight") for each in which])
-            bias = None
-            if which[0] == "attn_q":
-                vectors = [file.vector(f"{name}.{each}.bias") for each in which]
-                bias = torch.from_numpy(np.concatenate(vectors)).to(kind)
-            return Product(torch.from_numpy(weights).to(kind), bias, rank)
+        def product(which: str) -> Product:
+            name = f"blk.{number}.{which}"
+            bias = model.bias(name)
+            return Product(
+                torch.from_numpy(model.matrix(name)).to(kind),
+                None if bias is None else torch.from_numpy(bias).to(kind),
+                recipe,
+            )
 
-        self.before = _fixed(file.vector(f"{name}.attn_norm.weight"), kind)
-        self.between = _fixed(file.vector(f"{name}.ffn_norm.weight"), kind)
-        self.qkv = product("attn_q", "attn_k", "attn_v")
-        self.told = product("attn_output")
-        self.gate, self.up = product("ffn_gate"), product("ffn_up")
-        self.down = product("ffn_down")
+        before = "first" if number == 0 else f"blk.{number - 1}.out"
+        self.before = _fixed(model.normal(before), kind)
+        self.between = _fixed(model.normal(f"blk.{number}.middle"), kind)
+        self.qkv, self.told = product("qkv"), product("told")
+        self.gate, self.up = product("gate"), product("up")
+        self.down = product("down")
 
     def forward(self, x: Tensor, row: Row, cosines: Tensor, sines: Tensor) -> Tensor:
         x = x + self.told(self.attended(self.qkv(self.normal(x, self.before)), row, cosines, sines))
@@ -99,12 +98,11 @@ class Layer(nn.Module):
         return x + self.down(gated)
 
     def normal(self, x: Tensor, weights: Tensor) -> Tensor:
-        return functional.rms_norm(x, (x.shape[-1],), weights, self.sizes.epsilon)
+        return functional.rms_norm(x, (x.shape[-1],), weights, self.epsilon)
 
     def attended(self, qkv: Tensor, row: Row, cosines: Tensor, sines: Tensor) -> Tensor:
-        s = self.sizes
-        heads = qkv.view(len(qkv), -1, s.head_width)
-        q, k, v = heads.split((s.heads, s.kv_heads, s.kv_heads), 1)
+        heads = qkv.view(len(qkv), self.heads + 2 * self.kv_heads, -1)
+        q, k, v = heads.split((self.heads, self.kv_heads, self.kv_heads), 1)
         q, k = _turned(q, cosines, sines), _turned(k, cosines, sines)
         below = (len(row.lengths), max(row.lengths))
         q, k, v = (
@@ -119,29 +117,23 @@ class Layer(nn.Module):
 
 
 class Network(nn.Module):
-    """A Qwen2 model that learns. `written` are the tokens that get a score."""
+    """A Qwen2 model that learns; only tokens that a program may have get a score."""
 
     def __init__(
-        self,
-        path: Path,
-        written: Sequence[int],
-        rank: int = RANK,
-        kind: torch.dtype = torch.float32,
+        self, model: Installed, recipe: Recipe = RECIPE, kind: torch.dtype = torch.float32
     ) -> None:
         super().__init__()
-        file = GgufFile(path)
-        self.sizes: Sizes = file.sizes
-        self.embeddings = _fixed(_dense(file, "token_embd.weight"), kind)
+        self.epsilon = model.epsilon
+        self.embeddings = _fixed(model.embeddings, kind)
         self.layers = nn.ModuleList(
-            Layer(file, number, rank, kind) for number in range(self.sizes.layers)
+            Layer(model, number, recipe, kind) for number in range(model.layers)
         )
-        self.last = _fixed(file.vector("output_norm.weight"), kind)
-        self.head = _fixed(_dense(file, "output.weight")[np.array(written)], kind)
-        turns = self.sizes.rope_base ** (
-            torch.arange(0, self.sizes.head_width, 2) / self.sizes.head_width
+        self.last = _fixed(model.normal(f"blk.{model.layers - 1}.out"), kind)
+        self.head = _fixed(model.matrix("head"), kind)
+        self.cosines, self.sines = (
+            _constant(torch.from_numpy(np.array(model.constant(name)[:LONGEST])))
+            for name in ("cosines", "sines")
         )
-        angles = torch.arange(LONGEST)[:, None] / turns[None]
-        self.cosines, self.sines = _constant(angles.cos()), _constant(angles.sin())
 
     def forward(self, row: Row, wanted: Tensor) -> Tensor:
         """The scores of what follows the tokens at the places `wanted` of a row."""
@@ -150,7 +142,7 @@ class Network(nn.Module):
         cosines, sines = self.cosines[places][:, None], self.sines[places][:, None]
         for layer in self.layers:
             x = layer(x, row, cosines, sines)
-        x = functional.rms_norm(x[wanted], (x.shape[-1],), self.last, self.sizes.epsilon)
+        x = functional.rms_norm(x[wanted], (x.shape[-1],), self.last, self.epsilon)
         return functional.linear(x, self.head).float()
 
     def changes(self) -> list[nn.Parameter]:
@@ -171,12 +163,8 @@ class Network(nn.Module):
                 value.copy_(torch.as_tensor(learned[key]))
 
 
-def _dense(file: GgufFile, name: str) -> np.ndarray[Any, np.dtype[np.float32]]:
-    return file._dense(name, None)
-
-
-def _fixed(values: np.ndarray[Any, np.dtype[np.float32]], kind: torch.dtype) -> nn.Parameter:
-    return _constant(torch.from_numpy(np.array(values)).to(kind))
+def _fixed(values: Floats, kind: torch.dtype) -> nn.Parameter:
+    return _constant(torch.from_numpy(values).to(kind))
 
 
 def _constant(values: Tensor) -> nn.Parameter:
