@@ -18,22 +18,20 @@ import msgspec
 from nl2robot import __version__
 from nl2robot.errors import UserError
 from nl2robot.fleet.address import FleetAddress
-from nl2robot.fleet.book import FILE, Errand, FleetBook, Offer
+from nl2robot.fleet.book import FILE, Errand, FleetBook
 from nl2robot.fleet.choosing import called
+from nl2robot.fleet.drawing import Drawing
 from nl2robot.fleet.hub import Deeds, Hub
 from nl2robot.fleet.inbox import Inbox
 from nl2robot.fleet.keeping import Keeping, check_for_all
 from nl2robot.fleet.key import fingerprint, fleet_key
-from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped, ZoneEntry
+from nl2robot.fleet.messages import About, Order, Standing, Stop, Stopped
 from nl2robot.fleet.network import Network
+from nl2robot.fleet.own_robot import OwnRobot
 from nl2robot.fleet.performing import Performer
 from nl2robot.fleet.trouble import Trouble
 from nl2robot.fleet.trust import Station
-from nl2robot.review.review import digest
 from nl2robot.run.runner import Runner
-from nl2robot.run.state import GOING
-from nl2robot.schedule.findings import News, decoded, findings_of, news
-from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
 from nl2robot.schedule.service import waits_for
 from nl2robot.schedule.telling import trouble
 from robot_api.client import Robot
@@ -48,7 +46,6 @@ TOLD_EVERY: Final = 0.2
 """Seconds between two events `fleet`."""
 FORGETS_EVERY: Final = 3600.0
 STOPS_KEPT: Final = 100
-LATEST_RUNS: Final = 200
 TWINS: Final = (
     "Another robot of the fleet is called “{name}”, too. Give one of them another name (--fleet);"
     " until then this one is told apart as {id}."
@@ -102,7 +99,6 @@ class Fleet:
         self._lock = threading.RLock()
         self._heard = Inbox()
         self._orders: queue.SimpleQueue[tuple[str, Order] | None] = queue.SimpleQueue()
-        self._zones: queue.SimpleQueue[list[ZoneEntry] | None] = queue.SimpleQueue()
         self._pose: Mapping[str, Any] = {}
         self._battery: float | None = None
         self._stage: Stage | None = None
@@ -123,7 +119,7 @@ class Fleet:
             deeds=Deeds(
                 ordered=lambda sender, order: self._orders.put((sender, order)),
                 stopped=self._stop_for,
-                zoned=self._zones.put,
+                zoned=lambda entries: self._drawing.put(entries),
                 changed=lambda errand: self._changed.notify_all(),
                 planned=self._planned,
             ),
@@ -151,7 +147,9 @@ class Fleet:
         )
         self.trouble = Trouble(address.connects, fingerprint(key))
         self._looked_at = float("-inf")
-        self._performer = Performer(self.book, self.hub.sealer.session, self, time.monotonic)
+        self._drawing = Drawing(self.hub, self._lock)
+        own_robot = OwnRobot(runner, self.book, self._station, lambda: self._battery)
+        self._performer = Performer(self.book, self.hub.sealer.session, own_robot, time.monotonic)
         self._threads = [
             threading.Thread(target=target, name=f"fleet {name}", daemon=True)
             for name, target in (
@@ -175,7 +173,7 @@ class Fleet:
     def __exit__(self, *_: object) -> None:
         self._heard.put(None)
         self._orders.put(None)
-        self._zones.put(None)
+        self._drawing.put(None)
         self.network.close()
         for thread in self._threads:
             thread.join()
@@ -313,69 +311,6 @@ class Fleet:
             }
             for each in told
         ]
-
-    # --- what the robot does for its fleet (`nl2robot.fleet.performing.Means`)
-
-    def doubts(self, sender: str, order: Order) -> str | None:
-        me = self.book.robot
-        doubt = self._station.doubts(sender, me, order) if sender != me else None
-        if doubt is not None:
-            _log.warning("The fleet's order %s was not taken. %s", order.offer, doubt)
-        return doubt
-
-    def consider(self, offer: Offer) -> str | None:
-        waits = waits_for(self._runner.present.state, time.time(), self._battery)
-        if waits is not None:
-            return f"It is not free ({waits})."
-        if digest(offer.program) != offer.sha256:
-            return "The program is not the one that was approved."
-        try:
-            approved = decoded(offer.reviewed)
-            review = self._runner.check(offer.program, offer.language)
-        except (msgspec.MsgspecError, UserError, RobotError) as error:
-            return str(error)
-        if not review.acceptable:
-            return next(each.message for each in review.findings if each.severity == "error")
-        new = [
-            each
-            for each in news(approved, findings_of(review))
-            # Where nobody could try it, its places stand in the program alone.
-            if each.kind != "place" or approved.stood is not None or approved.places
-        ]
-        return _told(new[0]) if new else None
-
-    def begin(self, offer: Offer) -> int:
-        approval = self._runner.approve(
-            offer.program,
-            offer.sha256,
-            offer.by,
-            utterance=offer.sentence,
-            language=offer.language,
-            insists=True,  # the review just now found what was approved
-        )
-        return self._runner.run(approval.id)
-
-    def came(self, run: int) -> tuple[str | None, str | None]:
-        present = self._runner.state()
-        if present is not None and present.run == run:
-            return (None, None) if present.state in GOING else (present.state, present.message)
-        found = self._runner.log.run(run)
-        if found is None or found.status is None:
-            return "broken_off", None
-        return found.status, found.message
-
-    def reminded(self, run: int) -> tuple[Outcome, ...]:
-        found = self._runner.log.run(run)
-        if found is None or asking_of(found.program) is None:
-            return ()
-        return tuple(outcomes(found.program, self._runner.log.calls(run)))
-
-    def lost(self, offer: Offer) -> int | None:
-        known = self.book.runs(LATEST_RUNS)  # the same appointment is done every day
-        for run in self._runner.log.runs(LATEST_RUNS):
-            if (run.sha256, run.approved_by) == (offer.sha256, offer.by) and run.id not in known:
-                return run.id
-        return None
 
     # --- inside
 
@@ -541,28 +476,14 @@ class Fleet:
         threading.Thread(target=work, name="fleet stop", daemon=True).start()
 
     def _share(self) -> None:
-        """Keep-out zones, through this station's own wire, as anybody's client would."""
+        """Keep-out zones."""
         try:
             robot = self._connect()
-            zones = robot.request("zones.list", {})
-        except RobotError:  # a station without a map to draw on
+        except RobotError:
             return
         with robot:
             self._ask_how_it_is(robot)
-            robot.subscribe("zones", lambda kind, data: self._zones.put([]))
-            undrawn: set[str] = set()
-            while True:
-                # Asked for after all that was heard is drawn: what is not there was removed.
-                self._drawn(zones, undrawn)
-                entries = self._zones.get()
-                if entries is None:
-                    return
-                for entry in entries:
-                    (undrawn.discard if self._draw(robot, entry) else undrawn.add)(entry.name)
-                try:
-                    zones = robot.request("zones.list", {})
-                except RobotError:  # this station ends
-                    return
+            self._drawing.keep(robot)
 
     def _ask_how_it_is(self, robot: Robot) -> None:
         """A robot that stands still since before we came has told nothing."""
@@ -573,36 +494,3 @@ class Fleet:
         with suppress(RobotError):
             percent = robot.battery()
             self._battery = self._battery if self._battery is not None else percent
-
-    def _drawn(self, zones: list[dict[str, Any]], undrawn: set[str]) -> None:
-        drawn = {
-            each["name"]: tuple((x, y) for x, y in each["polygon"])
-            for each in zones
-            if each["removable"]
-        }
-        with self._lock:
-            if self.hub.zones.drawn(drawn, undrawn):
-                self.hub.tell_zones()
-
-    def _draw(self, robot: Robot, entry: ZoneEntry) -> bool:
-        """Whether it is so here now."""
-        who = f"fleet, {entry.robot}"
-        try:
-            if entry.polygon is None:
-                robot.request("zones.remove", {"name": entry.name, "who": who})
-            else:
-                about = {"name": entry.name, "polygon": entry.polygon, "who": who}
-                robot.request("zones.set", msgspec.to_builtins(about))
-        except RobotError as error:
-            _log.warning("The zone %r of the fleet is not drawn here: %s", entry.name, error)
-            return entry.polygon is None  # it was not there
-        return True
-
-
-def _told(new: News) -> str:
-    said = {
-        "place": "Here it would also work at “{}”.",
-        "closed": "Here it does not reach “{}”.",
-        "fails": "Here it does not come to its end: {}",
-    }
-    return said.get(new.kind, "{}").format(new.text)
