@@ -66,7 +66,7 @@ class Inspection:
                 called(each, self._tls)
             except ssl.SSLError as error:
                 yield _told(each, error)
-            except OSError:  # it is away, or our own files cannot be read, which is told already
+            except (OSError, ValueError):  # away, or files or a port that are told of elsewhere
                 continue
             else:
                 self._calls.discard(each)

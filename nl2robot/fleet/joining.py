@@ -85,12 +85,19 @@ def hash_of(world: World) -> str:
 class Fleet:
     """Belongs to a fleet while it is entered."""
 
-    def __init__(self, address: FleetAddress, runner: Runner, connect: Callable[[], Robot]) -> None:
-        """`connect` opens a client to this robot's own station. Raises `UserError` without a key,
-        or if the book cannot be used."""
+    def __init__(
+        self,
+        address: FleetAddress,
+        runner: Runner,
+        connect: Callable[[], Robot],
+        notice: Callable[[str], Mapping[str, Any]] = trouble,
+    ) -> None:
+        """`connect` opens a client to this robot's own station; `notice` makes an event `notice` of
+        a sentence. Raises `UserError` without a key, or if the book cannot be used."""
         self.address = address
         self._runner = runner
         self._connect = connect
+        self._notice = notice
         key = address.key or fleet_key()
         log = runner.log.path
         folder = Path(log).parent if str(log) != ":memory:" else None
@@ -430,7 +437,7 @@ class Fleet:
         _log.warning("%s", sentence)
         if self._stage is None:
             return
-        self._stage.publish("notice", trouble(sentence))
+        self._stage.publish("notice", self._notice(sentence))
 
     def _perform(self) -> None:
         """Orders, one after the other: a review takes its time."""

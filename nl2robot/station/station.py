@@ -370,7 +370,7 @@ def _open(
 
     talks = Talks()
     proposals = Proposals(runner, publish)
-    company = Fleet(fleet, runner, connect) if fleet is not None else None
+    company = Fleet(fleet, runner, connect, schedule.trouble) if fleet else None
     if company is not None:
         schedule.company = company.keeping
     attention = Attention()

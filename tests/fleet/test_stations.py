@@ -57,7 +57,9 @@ def test_two_of_one_name_are_both_told_and_nothing_is_sent_to_the_name(ward: War
         ward.starts("another", called="Ben")
         found = ward.until("Ada", lambda found: sum(each["twin"] for each in found["members"]) == 2)
         assert told.wait(ward.soon)
+        kept = ben.request("schedule.notices", {})  # for whoever looks later
     assert "anderer Roboter" in sentences[0]["de"]
+    assert [each["notice"]["kind"] for each in kept] == ["trouble"]
     with pytest.raises(InvalidCall, match="Several robots are called “Ben”"):
         ward.run("Ada", 'robot.say("Hello.")\n', robot="Ben")
     id = next(each["id"] for each in found["members"] if each["twin"])
