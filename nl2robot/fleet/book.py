@@ -6,9 +6,11 @@ has nothing done twice. The robot's id lives here as well: who has lost the book
 
 from __future__ import annotations
 
+import math
 import secrets
 import sqlite3
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -121,6 +123,17 @@ class FleetBook:
     def close(self) -> None:
         with self._lock:
             self._db.close()
+
+    def note_stop(self, at: float) -> None:
+        """The robot was stopped then, in seconds since the epoch by the clock here."""
+        self._write("INSERT OR REPLACE INTO own VALUES ('stopped', ?)", str(at))
+
+    def last_stop(self) -> float:
+        """When the robot was stopped last; minus infinity if it never was. A time that is still to
+        come is no stop: somebody has set the clock."""
+        rows = self._rows("SELECT value FROM own WHERE key = 'stopped'")
+        at = float(rows[0][0]) if rows else -math.inf
+        return at if at <= time.time() else -math.inf
 
     # --- what was offered to this robot
 

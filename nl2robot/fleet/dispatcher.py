@@ -97,6 +97,11 @@ class Dispatcher:
         self._withdraw(errand)
         return self._keep(replace(errand, state="called_off"))
 
+    def call_off_all(self) -> None:
+        """Nothing is to be begun any more that no robot was told to begin."""
+        for id in tuple(self._open):
+            self.call_off(id)
+
     def tick(self, now: float) -> None:
         """Say what is to be said by now."""
         for errand in tuple(self._open.values()):

@@ -32,7 +32,8 @@ from nl2robot.fleet.performing import Performer
 from nl2robot.fleet.trouble import Trouble
 from nl2robot.fleet.trust import Station
 from nl2robot.run.runner import Runner
-from nl2robot.schedule.service import waits_for
+from nl2robot.schedule.clerk import Waits
+from nl2robot.schedule.service import RESTS_AFTER_STOP, waits_for
 from nl2robot.schedule.telling import trouble
 from robot_api.client import Robot
 from robot_api.errors import RobotError
@@ -44,6 +45,8 @@ LOOKS_EVERY: Final = 1.0
 """Seconds between two looks at whether the fleet is reached."""
 TOLD_EVERY: Final = 0.2
 """Seconds between two events `fleet`."""
+STOP: Final = "stop"
+"""What is told once for each stop of the robot (`nl2robot.station.part.STOP`)."""
 FORGETS_EVERY: Final = 3600.0
 STOPS_KEPT: Final = 100
 TWINS: Final = (
@@ -102,6 +105,7 @@ class Fleet:
         log = runner.log.path
         folder = Path(log).parent if str(log) != ":memory:" else None
         self.book = FleetBook(folder / FILE if folder is not None else ":memory:")
+        self._stopped_before = self.book.last_stop()
         self._station = Station(folder)
         self._lock = threading.RLock()
         self._heard = Inbox()
@@ -155,7 +159,7 @@ class Fleet:
         self.trouble = Trouble(address.connects, fingerprint(key))
         self._looked_at = float("-inf")
         self._drawing = Drawing(self.hub, self._lock)
-        own_robot = OwnRobot(runner, self.book, self._station, lambda: self._battery)
+        own_robot = OwnRobot(runner, self.book, self._station, self._waits)
         self._performer = Performer(self.book, self.hub.sealer.session, own_robot, time.monotonic)
         self._threads = [
             threading.Thread(target=target, name=f"fleet {name}", daemon=True)
@@ -304,7 +308,7 @@ class Fleet:
             self.hub.note_self(time.monotonic())
             known = dict(self.hub.roll.members)
             told = [each for each in known if robots is None or each in robots]
-            made = self.hub.stops.begin(told, because, time.monotonic())
+            made = self.hub.stops.begin(told, because, time.monotonic(), everyone=robots is None)
         made.over.wait(10.0)
         with self._lock:
             results = dict(made.results)
@@ -335,7 +339,7 @@ class Fleet:
 
     def _standing(self) -> Standing:
         state, pose = self._runner.present.state, self._pose
-        waits = waits_for(state, time.time(), self._battery)
+        waits = self._waits()
         # Some time after a stop it is free again, though nothing has happened since.
         over = state.state == "stopped" and waits is None
         rests = "charging" if state.charging else "idle"
@@ -354,6 +358,12 @@ class Fleet:
             waits=waits,
         )
 
+    def _waits(self) -> Waits | None:
+        """Why the robot begins nothing now; it rests after a stop though it was started anew."""
+        now = time.time()
+        waits = waits_for(self._runner.present.state, now, self._battery)
+        return waits or ("stopped" if now - self._stopped_before < RESTS_AFTER_STOP else None)
+
     def _where(self, place: str) -> tuple[float, float] | None:
         found = self._runner.knowledge.world.place(place)
         return (found.pose.x, found.pose.y) if found is not None and found.pose else None
@@ -365,6 +375,8 @@ class Fleet:
     def _on_event(self, kind: str, data: Mapping[str, Any]) -> None:
         if kind == "pose":
             self._pose = data
+        elif kind == STOP:
+            self._heard.put(lambda came: self.book.note_stop(time.time()))
         elif kind == "battery" and isinstance(data.get("percent"), int | float):
             self._battery = float(data["percent"])
 
@@ -466,6 +478,8 @@ class Fleet:
                 self.hub.say("stopped", answer, sender)
             return
         self._stopping[stop.stop] = None
+        if stop.everyone:
+            self.hub.dispatcher.call_off_all()
         while len(self._stopping) > STOPS_KEPT:
             del self._stopping[next(iter(self._stopping))]
 

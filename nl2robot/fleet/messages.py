@@ -104,6 +104,8 @@ class Answer(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 class Stop(msgspec.Struct, frozen=True):
     stop: str
     because: str
+    everyone: bool = False
+    """Whether all were stopped: then what no robot has begun is called off, too."""
 
 
 class Stopped(msgspec.Struct, frozen=True):

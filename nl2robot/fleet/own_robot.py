@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import time
 from collections.abc import Callable
 from typing import Final
 
@@ -18,7 +17,6 @@ from nl2robot.run.runner import Runner
 from nl2robot.run.state import GOING
 from nl2robot.schedule.findings import News, decoded, findings_of, news
 from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
-from nl2robot.schedule.service import waits_for
 from robot_api.errors import RobotError
 
 LATEST_RUNS: Final = 200
@@ -33,13 +31,13 @@ class OwnRobot:
         runner: Runner,
         book: FleetBook,
         station: Station,
-        battery: Callable[[], float | None],
+        waits: Callable[[], str | None],
     ) -> None:
-        """`battery` tells how full it is, in percent, as far as that is known."""
+        """`waits` tells why the robot begins nothing now; None if it is free."""
         self._runner = runner
         self._book = book
         self._station = station
-        self._battery = battery
+        self._waits = waits
 
     def doubts(self, sender: str, order: Order) -> str | None:
         me = self._book.robot
@@ -49,7 +47,7 @@ class OwnRobot:
         return doubt
 
     def consider(self, offer: Offer) -> str | None:
-        waits = waits_for(self._runner.present.state, time.time(), self._battery())
+        waits = self._waits()
         if waits is not None:
             return f"It is not free ({waits})."
         if digest(offer.program) != offer.sha256:

@@ -16,7 +16,7 @@ AGAIN: Final = 0.25
 WITHIN: Final = 5.0
 """Seconds after which whoever waits is told who has not confirmed it; it is said on for `GOES_ON`,
 so that a robot behind a short cut stops, too."""
-GOES_ON: Final = 20.0
+GOES_ON: Final = 60.0
 
 
 @dataclass
@@ -39,8 +39,10 @@ class Stops:
         self._say = say
         self._rounds: dict[str, Round] = {}
 
-    def begin(self, robots: Iterable[str], because: str, now: float) -> Round:
-        made = Round(Stop(secrets.token_hex(8), because), now, set(robots))
+    def begin(
+        self, robots: Iterable[str], because: str, now: float, *, everyone: bool = False
+    ) -> Round:
+        made = Round(Stop(secrets.token_hex(8), because, everyone), now, set(robots))
         self._rounds[made.stop.stop] = made
         self.tick(now)
         return made

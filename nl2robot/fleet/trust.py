@@ -154,6 +154,16 @@ def _holds(sender: str, robot: str, order: Order) -> bool:
     return True
 
 
+def _generated() -> Ed25519PrivateKey:
+    """One whose public key is no option where it is typed: it does not begin with "-"."""
+    from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
+
+    while True:
+        key = Ed25519PrivateKey.generate()
+        if not _text(key.public_key().public_bytes_raw()).startswith("-"):
+            return key
+
+
 def _text(raw: bytes) -> str:
     return base64.urlsafe_b64encode(raw).decode("ascii").rstrip("=")
 
@@ -163,7 +173,7 @@ def _made(file: Path | None) -> Ed25519PrivateKey:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
     if file is None:
-        return Ed25519PrivateKey.generate()
+        return _generated()
     try:
         made(file.parent)
         try:
@@ -175,7 +185,7 @@ def _made(file: Path | None) -> Ed25519PrivateKey:
                     f" it away (chmod 600 {file}), or remove it to have a new one made."
                 ) from None
             return Ed25519PrivateKey.from_private_bytes(file.read_bytes())
-        key = Ed25519PrivateKey.generate()
+        key = _generated()
         with os.fdopen(handle, "wb") as opened:
             opened.write(key.private_bytes_raw())
     except (OSError, ValueError) as error:

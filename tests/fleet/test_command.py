@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import json
+import signal
 import stat
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
 
 from nl2robot.cli import main as cli
+from nl2robot.cli.commands.fleet import command
 from nl2robot.cli.operator import Operator
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus
 from nl2robot.fleet.address import BadFleet, FleetAddress, parse_fleet
 from nl2robot.fleet.book import Errand
 from nl2robot.fleet.key import VARIABLE
+from nl2robot.review.review import digest
 from nl2robot.run.runlog import RunLog
 from nl2robot.station.station import simulated_station
+from robot_api.client import Robot
 from sim.world.loading import load_world
 
 Said = pytest.CaptureFixture[str]
@@ -127,7 +132,13 @@ def test_ctrl_c_calls_off_what_was_sent_or_stops_who_does_it(
             errand = msgspec.convert(operator.robot.request("fleet.wait", waits), Errand)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("nl2robot.cli.commands.fleet.command._watched", interrupted)
+    def pressed_again(*given: Any) -> str:
+        signal.raise_signal(signal.SIGINT)
+        return called_back(*given)
+
+    called_back = command._called_back
+    monkeypatch.setattr(command, "_watched", interrupted)
+    monkeypatch.setattr(command, "_called_back", pressed_again)
     monkeypatch.setattr("builtins.input", lambda *_: "approve")
     log = RunLog(home / "runs.sqlite")
     program = home / "patrol.py"
@@ -146,8 +157,53 @@ def test_ctrl_c_calls_off_what_was_sent_or_stops_who_does_it(
         here = ("--robot", f"ws://{station.address}")
         ran = cli.main(["fleet", "run", "--program", str(program), *here])
         assert ran == ExitStatus.INTERRUPTED
+        assert ("Stopped" if begun else "Called off") in capsys.readouterr().out
         [errand] = robot.request("fleet.list", {})["errands"]
         over = robot.request("fleet.wait", {"errand": errand["id"], "timeout": 60})
         assert over["state"] == ("stopped" if begun else "called_off")
         assert [run.status for run in log.runs()] == (["stopped"] if begun else [])
     log.close()
+
+
+def test_when_all_are_stopped_nothing_waits_and_who_was_stopped_rests_when_started_anew(
+    home: Path,
+) -> None:
+    log = RunLog(home / "runs.sqlite")
+    fleet, ward = FleetAddress("Ada", key=b"k" * 40), load_world("ward")
+
+    def waits(robot: Robot) -> str | None:
+        [ada] = robot.request("fleet.list", {})["members"]
+        return (ada["standing"] or {}).get("waits")
+
+    with (
+        simulated_station(ward, log, fleet=fleet) as station,
+        station.connect() as robot,
+    ):
+        robot.stop()
+        while waits(robot) != "stopped":
+            pass
+        program = 'robot.say("Hello.")\n'
+        given = {"program": program, "sha256": digest(program), "by": "Nurse Kim"}
+        errand = robot.request("fleet.run", given)["id"]
+        robot.request("fleet.stop", {})
+        over = robot.request("fleet.wait", {"errand": errand, "timeout": 60})
+        assert over["state"] == "called_off"
+    with (
+        simulated_station(ward, log, fleet=fleet) as station,
+        station.connect() as robot,
+    ):
+        while waits(robot) is None:
+            pass
+        assert waits(robot) == "stopped" and log.runs() == []
+    log.close()
+
+
+def test_words_for_another_program_are_refused(home: Path, capsys: Said) -> None:
+    program = home / "say.py"
+    program.write_text('robot.say("Hello.")\n')
+    with simulated_station(
+        load_world("ward"), RunLog(":memory:"), fleet=FleetAddress("Ada", key=b"k" * 40)
+    ) as station:
+        here = ("--robot", f"ws://{station.address}")
+        ran = cli.main(["fleet", "run", "go to the lobby", "--program", str(program), *here])
+    assert ran != ExitStatus.OK and "either words or a --program" in capsys.readouterr().err

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Mapping, Sequence
+import signal
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from typing import Any, Final
 
 import msgspec
@@ -233,6 +235,11 @@ def _errand_state(errand: Errand, words: Mapping[str, Any]) -> str:
 def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) -> int:
     words, show = terminal.words, terminal.console.print
     sentence = options.words or ""
+    if options.program is not None and sentence:
+        raise UserError(
+            "Give either words or a --program: the words would stand in the log for another"
+            " program."
+        )
     if options.program is not None:
         program = read_program(options.program)
     elif sentence:
@@ -264,11 +271,15 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
         "language": options.lang,
         **({"robot": options.on} if options.on else {}),
     }
-    errand = msgspec.convert(operator.robot.request("fleet.run", given), Errand)
+    errand: Errand | None = None
     try:
+        with _ctrl_c_later():  # once it is given, it is known what is to be called off
+            errand = msgspec.convert(operator.robot.request("fleet.run", given), Errand)
         errand, robot = _watched(operator, terminal, errand)
     except KeyboardInterrupt:
-        _called_back(operator, errand.id)
+        if errand is not None:
+            with _ctrl_c_later():
+                show(visible(_called_back(operator, errand.id, words)), markup=False)
         raise
     if errand.robot_name is not None and robot is None:
         show(visible(words["fleet_given"].format(robot=errand.robot_name)), markup=False)
@@ -292,9 +303,22 @@ def _watched(operator: Operator, terminal: Terminal, errand: Errand) -> tuple[Er
     return errand, robot
 
 
-def _called_back(operator: Operator, errand: str) -> None:
+@contextmanager
+def _ctrl_c_later() -> Iterator[None]:
+    """Whoever presses Ctrl-C again, or too early, does not keep a robot from being stopped."""
+    pressed: list[int] = []
+    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if pressed:
+        raise KeyboardInterrupt
+
+
+def _called_back(operator: Operator, errand: str, words: Mapping[str, Any]) -> str:
     """Whoever approved it does not want it any more: it is not begun, or the robot that does it is
-    stopped."""
+    stopped; which of them, in words."""
     try:
         operator.robot.request("fleet.call_off", {"errand": errand})
     except InvalidCall:  # a robot was told to begin it, or it is over
@@ -302,6 +326,8 @@ def _called_back(operator: Operator, errand: str) -> None:
         found = msgspec.convert(now, Errand)
         if found.open and found.robot is not None:
             operator.robot.request("fleet.stop", {"robot": found.robot})
+    now = operator.robot.request("fleet.wait", {"errand": errand, "timeout": 2})
+    return _errand_state(msgspec.convert(now, Errand), words)
 
 
 def _stop(options: argparse.Namespace, terminal: Terminal, robot: Robot) -> int:
