@@ -43,7 +43,7 @@ OBSERVER = {
     *("program.phrases", "program.wait", "program.state", "program.list"),
     *("program.answer", "program.unfinished"),
     *("proposal.list", "proposal.show", "proposal.wait"),
-    *("fleet.list", "fleet.wait", "fleet.stop"),
+    *("fleet.list", "fleet.plans", "fleet.fit", "fleet.wait", "fleet.stop"),
 }
 ASSISTANT = OBSERVER | {
     *("program.translate", "program.check", "proposal.make", "proposal.withdraw"),

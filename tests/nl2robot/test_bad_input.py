@@ -255,7 +255,7 @@ def test_a_log_that_is_none_is_told(nl2robot, home) -> None:
 def test_a_full_disk_stops_the_run_and_loses_nothing(start, home, tmp_path) -> None:
     (tmp_path / "beat.py").write_text("for beat in range(400):\n    robot.wait(0.1)\n")
     program = ("run", *WARD, "-y", "--program", str(tmp_path / "beat.py"))
-    command = start(*program, largest_file=60_000)
+    command = start(*program, largest_file=80_000)
     assert command.end() == ExitStatus.FAILED
     assert "Stopped." in command.output
     assert "Free some disk space" in " ".join(command.output.split())
