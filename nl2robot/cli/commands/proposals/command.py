@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     trust(options)
     terminal = Terminal(language=options.lang)
-    terminal.nobody = "nobody_decides"
+    terminal.nobody, terminal.unclear = "nobody_decides", "undecided_proposal"
     with client_of(options.robot, options.token) as robot:
         operator = Operator(robot, user_name())
         if options.json:
