@@ -80,6 +80,24 @@ class Proposal(msgspec.Struct, frozen=True, kw_only=True):
     """The program that was approved instead, if somebody changed it by hand."""
 
 
+def check_waits(found: Proposal) -> None:
+    """Raises `UserError` if nobody can decide on it any more."""
+    match found.state:
+        case "withdrawn":
+            raise UserError(
+                f"{found.by} has withdrawn proposal {found.id}. There is nothing to do."
+            )
+        case "expired":
+            raise UserError(
+                f"Proposal {found.id} has waited too long and does not hold any more. Whoever made"
+                " it may make it again."
+            )
+        case "approved":
+            raise UserError(f"Proposal {found.id} was approved by {found.decided_by} already.")
+        case "declined":
+            raise UserError(f"Proposal {found.id} was declined by {found.decided_by} already.")
+
+
 class Proposer(NamedTuple):
     """For whom limits hold: an account, whatever it calls itself; without one a name at a
     connection, for several assistants may come over the same."""
@@ -274,22 +292,8 @@ class Proposals:
     def _waiting(self, number: int) -> Proposal:
         """That one, which nobody has decided; with the lock. Raises `UserError`."""
         found = self._one(number)
-        match found.state:
-            case "waiting":
-                return found
-            case "withdrawn":
-                raise UserError(
-                    f"{found.by} has withdrawn proposal {number}. There is nothing to do."
-                )
-            case "expired":
-                raise UserError(
-                    f"Proposal {number} has waited too long and does not hold any more. Whoever"
-                    " made it may make it again."
-                )
-            case "approved":
-                raise UserError(f"Proposal {number} was approved by {found.decided_by} already.")
-            case "declined":
-                raise UserError(f"Proposal {number} was declined by {found.decided_by} already.")
+        check_waits(found)
+        return found
 
     def _decide(self, number: int, state: State, by: str | None, **more: Any) -> Proposal:
         """With the lock."""

@@ -162,3 +162,16 @@ def test_who_changes_it_first_approves_what_they_made_of_it(
     monkeypatch.setattr(Terminal, "edit", lambda self, program: 'robot.say("Good night.")\n')
     assert proposals("1", typed=("edit", "a")) == ExitStatus.OK
     assert ward.ask("show", id=1)["ran"] == 'robot.say("Good night.")\n'
+
+
+def test_of_what_is_decided_nobody_is_asked(
+    ward: Asked, proposals: Command, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ward.approve(ward.propose()["proposal"])
+    ward.propose()
+    ward.ask("decline", id=2, by="Nurse Kim")
+    for number, said in (("1", "freigegeben"), ("2", "abgelehnt")):
+        assert proposals(number, "--lang", "de") == ExitStatus.BAD_INPUT
+        told = capsys.readouterr()
+        assert f"Vorschlag {number} wurde schon von" in told.err and said in told.err
+        assert "robot." not in told.out
