@@ -48,6 +48,9 @@ EVENTS: Final[Mapping[str, str]] = {
 }
 """The events that proposals publish; without the program."""
 
+_PROPOSED_BY: Final = " (proposed by "
+"""In the log, behind whoever approved it."""
+
 State = Literal["waiting", "approved", "declined", "withdrawn", "expired"]
 
 
@@ -96,6 +99,12 @@ def check_waits(found: Proposal) -> None:
             raise UserError(f"Proposal {found.id} was approved by {found.decided_by} already.")
         case "declined":
             raise UserError(f"Proposal {found.id} was declined by {found.decided_by} already.")
+
+
+def approved_and_proposed(who: str) -> tuple[str, str]:
+    """Whoever approved a run and whoever proposed it, of what the log has; "" if nobody did."""
+    approved, _, proposed = who.partition(_PROPOSED_BY)
+    return approved, proposed.removesuffix(")")
 
 
 class Proposer(NamedTuple):
@@ -246,7 +255,7 @@ class Proposals:
         approval = self._runner.approve(
             text,
             sha256,
-            f"{by} (proposed by {asked.by})",
+            f"{by}{_PROPOSED_BY}{asked.by})",
             utterance=f"{asked.by}: {asked.sentence}",
             language=asked.language,
             proposed=asked.program,
