@@ -246,14 +246,16 @@ class Operator:
         """Programs that assistants have proposed, the newest last."""
         return self._request("proposal.list", {}, list[Proposal])
 
-    def approve_proposal(self, proposal: Proposal, insists: bool) -> Proposal:
-        """Approve exactly that program, and start it."""
+    def approve_proposal(self, proposal: Proposal, review: Review, insists: bool) -> Proposal:
+        """Approve exactly the program that was reviewed, maybe changed by hand, and start it."""
         parameters = {
             "id": proposal.id,
-            "sha256": proposal.sha256,
+            "sha256": review.sha256,
             "by": self.name,
             "insists": insists,
         }
+        if review.program != proposal.program:
+            parameters["program"] = review.program
         return self._request("proposal.approve", parameters, Proposal)
 
     def decline_proposal(self, proposal: Proposal, reason: str | None = None) -> Proposal:

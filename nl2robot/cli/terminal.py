@@ -53,6 +53,12 @@ if TYPE_CHECKING:
 
 Decision = Literal["approve", "edit", "reject"]
 _ELSE: Final[tuple[Decision, ...]] = ("edit", "reject")
+_EVERYWHERE: Final[Mapping[str, tuple[str, str]]] = {
+    "approve": ("a", "approve"),
+    "edit": ("e", "edit"),
+    "reject": ("r", "reject"),
+}
+"""What counts in every language that has no other meaning for it: scripts are written once."""
 _EDITORS: Final = ("nano", "sensible-editor", "vim", "vi")
 """Tried one after the other where none is named: the first needs no explanation."""
 
@@ -91,6 +97,9 @@ class Terminal:
 
     nobody = "nobody_there"
     """What is said, by its key in `terminal.yaml`, when a question is not answered."""
+
+    unclear = "undecided"
+    """The same, when what is answered decides nothing."""
 
     hears = False
     """Whether somebody may say "stop" at any time, and is to be listened to."""
@@ -235,9 +244,9 @@ class Terminal:
         while True:
             answer = self.ask(asked, undecided).strip()
             said = answer.lower().strip(" .!,")
-            if insisting and not said:
+            if insisting and not said and self.somebody_is_there:
                 return "reject", answer
-            means = next((way for way, words in self.words["answers"].items() if said in words), "")
+            means = self._meaning(said)
             for decision in _ELSE:
                 if means == decision:
                     return decision, answer
@@ -250,6 +259,27 @@ class Terminal:
                 return None, answer
             if not self.somebody_is_there:  # to read the question once more
                 asked, undecided = "", answer
+
+    def settle(self, review: Review) -> Decision:
+        """The same where nothing can be corrected: what is none of the answers is asked again, and
+        from a script it decides nothing. Raises `UserError`."""
+        while True:
+            decision, answer = self.decide(review)
+            if decision is not None:
+                return decision
+            if not self.somebody_is_there:
+                raise UserError(self._undecided(answer), ExitStatus.NOT_APPROVED)
+
+    def _meaning(self, said: str) -> str:
+        """Of an answer: a decision, "insist" or nothing."""
+        for answers in (self.words["answers"], _EVERYWHERE):
+            for way, words in answers.items():
+                if said in words:
+                    return str(way)
+        return ""
+
+    def _undecided(self, answer: str) -> str:
+        return str(self.words[self.unclear].format(answer=visible(answer)))
 
     def next_line(self) -> str | None:
         """The next thing that somebody says or types on their own; None at the end of the input."""
@@ -268,7 +298,7 @@ class Terminal:
             print()
             sentence = self.words[self.nobody]
             if undecided is not None:
-                sentence = self.words["undecided"].format(answer=visible(undecided))
+                sentence = self._undecided(undecided)
             raise UserError(sentence, ExitStatus.NOT_APPROVED) from None
 
     def typed(self, seconds: float) -> str | None:

@@ -48,6 +48,9 @@ EVENTS: Final[Mapping[str, str]] = {
 }
 """The events that proposals publish; without the program."""
 
+_PROPOSED_BY: Final = " (proposed by "
+"""In the log, behind whoever approved it."""
+
 State = Literal["waiting", "approved", "declined", "withdrawn", "expired"]
 
 
@@ -78,6 +81,30 @@ class Proposal(msgspec.Struct, frozen=True, kw_only=True):
     """The run that it became."""
     ran: str | None = None
     """The program that was approved instead, if somebody changed it by hand."""
+
+
+def check_waits(found: Proposal) -> None:
+    """Raises `UserError` if nobody can decide on it any more."""
+    match found.state:
+        case "withdrawn":
+            raise UserError(
+                f"{found.by} has withdrawn proposal {found.id}. There is nothing to do."
+            )
+        case "expired":
+            raise UserError(
+                f"Proposal {found.id} has waited too long and does not hold any more. Whoever made"
+                " it may make it again."
+            )
+        case "approved":
+            raise UserError(f"Proposal {found.id} was approved by {found.decided_by} already.")
+        case "declined":
+            raise UserError(f"Proposal {found.id} was declined by {found.decided_by} already.")
+
+
+def approved_and_proposed(who: str) -> tuple[str, str]:
+    """Whoever approved a run and whoever proposed it, of what the log has; "" if nobody did."""
+    approved, _, proposed = who.partition(_PROPOSED_BY)
+    return approved, proposed.removesuffix(")")
 
 
 class Proposer(NamedTuple):
@@ -228,7 +255,7 @@ class Proposals:
         approval = self._runner.approve(
             text,
             sha256,
-            f"{by} (proposed by {asked.by})",
+            f"{by}{_PROPOSED_BY}{asked.by})",
             utterance=f"{asked.by}: {asked.sentence}",
             language=asked.language,
             proposed=asked.program,
@@ -274,22 +301,8 @@ class Proposals:
     def _waiting(self, number: int) -> Proposal:
         """That one, which nobody has decided; with the lock. Raises `UserError`."""
         found = self._one(number)
-        match found.state:
-            case "waiting":
-                return found
-            case "withdrawn":
-                raise UserError(
-                    f"{found.by} has withdrawn proposal {number}. There is nothing to do."
-                )
-            case "expired":
-                raise UserError(
-                    f"Proposal {number} has waited too long and does not hold any more. Whoever"
-                    " made it may make it again."
-                )
-            case "approved":
-                raise UserError(f"Proposal {number} was approved by {found.decided_by} already.")
-            case "declined":
-                raise UserError(f"Proposal {number} was declined by {found.decided_by} already.")
+        check_waits(found)
+        return found
 
     def _decide(self, number: int, state: State, by: str | None, **more: Any) -> Proposal:
         """With the lock."""

@@ -13,6 +13,7 @@ from robot_api.server import Context, Service
 from sandbox.limits import MAX_PROGRAM
 
 _TEXT: Final = {"type": "string", "maxLength": MAX_TEXT}
+_PROGRAM: Final = {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM}
 
 
 _MARKS: Final = str.maketrans(dict.fromkeys('“”„«»"‟❝❞〝〞＂', "'"))
@@ -52,7 +53,7 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
             " they should know. It is reviewed at once; one with an error is refused. It runs when"
             " somebody approves it, and waits ten minutes for that.",
             {
-                "program": {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM},
+                "program": _PROGRAM,
                 "sentence": {**_TEXT, "minLength": 1},
                 "by": NAME,
                 "why": _TEXT,
@@ -96,12 +97,22 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
         ),
         "proposal.approve": service(
             lambda p: proposals.approve(
-                p["id"], p["sha256"], p["by"], insists=p.get("insists", False)
+                p["id"],
+                p["sha256"],
+                p["by"],
+                program=p.get("program"),
+                insists=p.get("insists", False),
             ),
-            "Approve exactly the proposed program with this SHA-256, and begin it at once; `run` is"
-            " its run. One that does not come to its end in the dry run is refused unless somebody"
-            " `insists`.",
-            {"id": NUMBER, "sha256": SHA256, "by": NAME, "insists": {"type": "boolean"}},
+            "Approve exactly the proposed program with this SHA-256, or the `program` that somebody"
+            " made of it by hand, and begin it at once; `run` is its run. One that does not come to"
+            " its end in the dry run is refused unless somebody `insists`.",
+            {
+                "id": NUMBER,
+                "sha256": SHA256,
+                "by": NAME,
+                "program": _PROGRAM,
+                "insists": {"type": "boolean"},
+            },
             "id sha256 by",
             result=Proposal,
         ),

@@ -85,7 +85,7 @@ def test_whoever_says_no_may_say_why(
     ("piped", "told"),
     [
         ("", "Nobody is there to answer, so the proposal waits on."),
-        ("a\n", "“a” decides nothing here, so nothing was run."),
+        ("a\n", "“a” decides nothing here, so the proposal waits on."),
     ],
 )
 def test_a_script_that_answers_otherwise_is_asked_once_and_told(
@@ -117,3 +117,61 @@ def test_ctrl_c_stops_what_was_approved(
     assert proposals("1", typed=("a",)) == ExitStatus.INTERRUPTED
     run = ward.ask("show", id=1)["run"]
     assert ward.robot.request("program.wait", {"run": run})["state"] == "stopped"
+
+
+@pytest.mark.parametrize("piped", ["approv\n", "maybe later\n", "\n"])
+def test_a_script_that_is_not_understood_decides_nothing(
+    piped: str,
+    ward: Asked,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    ward.propose()
+    monkeypatch.setattr("sys.stdin", io.StringIO(piped))
+    command = ["proposals", "1", "--robot", f"ws://{ward.robot.address}"]
+    assert main(command) == ExitStatus.NOT_APPROVED
+    assert "decides nothing here, so the proposal waits on." in capsys.readouterr().err
+    assert ward.ask("show", id=1)["state"] == "waiting"
+
+
+def test_a_typo_is_no_decision(
+    ward: Asked, proposals: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ward.propose()
+    monkeypatch.setattr(Terminal, "somebody_is_there", True)
+    assert proposals("1", typed=("aprove", "", "approve")) == ExitStatus.OK
+    assert ward.ask("show", id=1)["state"] == "approved"
+
+
+@pytest.mark.parametrize(
+    ("typed", "state"),
+    [("approve", "approved"), ("a", "approved"), ("reject", "declined"), ("r", "declined")],
+)
+def test_the_english_words_count_in_every_language(
+    typed: str, state: str, ward: Asked, proposals: Command
+) -> None:
+    ward.propose()
+    proposals("1", "--lang", "de", typed=(typed,))
+    assert ward.ask("show", id=1)["state"] == state
+
+
+def test_who_changes_it_first_approves_what_they_made_of_it(
+    ward: Asked, proposals: Command, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ward.propose()
+    monkeypatch.setattr(Terminal, "edit", lambda self, program: 'robot.say("Good night.")\n')
+    assert proposals("1", typed=("edit", "a")) == ExitStatus.OK
+    assert ward.ask("show", id=1)["ran"] == 'robot.say("Good night.")\n'
+
+
+def test_of_what_is_decided_nobody_is_asked(
+    ward: Asked, proposals: Command, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ward.approve(ward.propose()["proposal"])
+    ward.propose()
+    ward.ask("decline", id=2, by="Nurse Kim")
+    for number, said in (("1", "freigegeben"), ("2", "abgelehnt")):
+        assert proposals(number, "--lang", "de") == ExitStatus.BAD_INPUT
+        told = capsys.readouterr()
+        assert f"Vorschlag {number} wurde schon von" in told.err and said in told.err
+        assert "robot." not in told.out

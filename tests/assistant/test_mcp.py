@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import signal
 import socket
 import subprocess
 import sys
@@ -23,7 +25,7 @@ from mcp_types import Implementation
 
 from nl2robot.assistant.link import MAY, Link, connected
 from nl2robot.assistant.server import assistant_server
-from nl2robot.errors import UserError
+from nl2robot.errors import ExitStatus, UserError
 from nl2robot.proposals.proposals import MOST_WAITING
 from nl2robot.review.review import digest
 from robot_api.client import Robot
@@ -471,3 +473,68 @@ def test_what_is_for_later_is_said_to_be_for_people(served: Served) -> None:
             assert "You cannot propose that" in made["question_or_reason"]
 
     play(story)
+
+
+@contextmanager
+def waiting_for_a_decision(served: Served) -> Iterator[subprocess.Popen[bytes]]:
+    """The command as it waits, without the SDK's client, which would see to its end."""
+    with kim(served) as robot:
+        asked = Asked(robot)
+        number = asked.propose('robot.say("Hello!")\n')["proposal"]["id"]
+        messages: list[dict[str, Any]] = [
+            {
+                "id": 1,
+                "method": "initialize",
+                "params": {
+                    "protocolVersion": "2025-06-18",
+                    "capabilities": {},
+                    "clientInfo": {"name": "test", "version": "1"},
+                },
+            },
+            {"method": "notifications/initialized"},
+            {
+                "id": 2,
+                "method": "tools/call",
+                "params": {
+                    "name": "decision",
+                    "arguments": {"proposal": number, "wait_seconds": 50},
+                    "_meta": {"progressToken": 1},
+                },
+            },
+            {"id": 3, "method": "ping"},
+        ]
+        with subprocess.Popen(
+            [sys.executable, *MCP, "--robot", f"ws://{served.address}"],
+            env={**os.environ, "NL2ROBOT_HOME": str(served.home)},
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+        ) as server:
+            try:
+                assert server.stdin is not None and server.stdout is not None
+                for each in messages:
+                    server.stdin.write(json.dumps({"jsonrpc": "2.0", **each}).encode() + b"\n")
+                server.stdin.flush()
+                while json.loads(server.stdout.readline()).get("id") != 3:
+                    pass
+                yield server
+            finally:
+                server.kill()
+                asked.ask("decline", id=number, by="Nurse Kim")
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_it_though_its_input_is_open(served: Served, number: signal.Signals) -> None:
+    with waiting_for_a_decision(served) as server:
+        server.send_signal(number)
+        assert server.wait(5) == ExitStatus.INTERRUPTED
+        assert server.stderr is not None and server.stderr.read() == b""
+
+
+def test_it_ends_in_silence_when_the_assistant_s_program_has_died(served: Served) -> None:
+    with waiting_for_a_decision(served) as server:
+        assert server.stdin is not None and server.stdout is not None and server.stderr is not None
+        server.stdout.close()
+        server.stdin.close()
+        assert server.wait(10) == ExitStatus.OK
+        assert server.stderr.read() == b""

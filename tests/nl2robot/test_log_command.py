@@ -76,3 +76,28 @@ def test_it_is_told_in_the_language_asked_for(
     told = nl2robot("log", str(run), "--lang", language)[1]
     assert detailed in told and "My left track is off." in told
     assert "approved" not in told and "failed" not in told
+
+
+@pytest.mark.parametrize(
+    ("language", "who", "robot"),
+    [
+        ("en", "root (proposed by “mcp”)", "The simulated robot in ward"),
+        ("de", "root (vorgeschlagen von “mcp”)", "Der simulierte Roboter in ward"),
+        ("fr", "root (proposé par “mcp”)", "Le robot simulé dans ward"),
+    ],
+)
+def test_who_proposed_it_and_what_robot_it_was_is_told_in_that_language(
+    nl2robot, log, language: str, who: str, robot: str
+) -> None:
+    run = log.begin(
+        program="robot.say('a')",
+        sha256="",
+        approved_by="root (proposed by “mcp”)",
+        approved_at=0.0,
+        robot="The simulated robot",
+        world="ward",
+    )
+    log.end(run, "done", None)
+    told = nl2robot("log", str(run), "--lang", language)[1]
+    assert who in told and robot in told
+    assert who.split()[1] in nl2robot("log", "--lang", language)[1]

@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from nl2robot import sentences
 from nl2robot.changes import difference
 from nl2robot.cli.options.sentence import add_language
 from nl2robot.cli.options.values import whole
@@ -17,6 +18,7 @@ from nl2robot.cli.run_log import open_log
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
+from nl2robot.proposals.proposals import approved_and_proposed
 from nl2robot.run.retention import DAY
 from nl2robot.run.runlog import Run, RunLog
 from nl2robot.run.trouble import call_trouble, told
@@ -105,7 +107,7 @@ def _list(log: RunLog, terminal: Terminal, options: argparse.Namespace) -> None:
     for row in reversed(runs):
         what = row.utterance or row.program.strip().partition("\n")[0]
         table.add_row(
-            str(row.id), _when(row.started), row.approved_by, _how(row, terminal), visible(what)
+            str(row.id), _when(row.started), _who(row, terminal), _how(row, terminal), visible(what)
         )
     terminal.console.print(table, markup=False)
 
@@ -138,9 +140,11 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
         "run": f"{row.id}, {_how(row, terminal)}",
         "heard": row.heard,
         "understood": row.utterance,
-        "approved": words["approved"].format(who=row.approved_by, when=_when(row.approved_at)),
+        "approved": words["approved"].format(who=_who(row, terminal), when=_when(row.approved_at)),
         "changed": words["changed"].format(who=row.changed_by) if row.changed_by else None,
-        "robot": words["robot"].format(robot=row.robot, world=row.world),
+        "robot": words["robot"].format(
+            robot=row.robot and sentences.told(row.robot, language), world=row.world
+        ),
         "message": told(None, row.message, language) if row.message else None,
         "picture": row.picture,
         "program": f"SHA-256 {row.sha256[:16]}…",
@@ -170,6 +174,13 @@ def _show(log: RunLog, row: Run, terminal: Terminal) -> None:
 
 def _words(terminal: Terminal) -> Mapping[str, Any]:
     return texts_in(terminal.language, "log")
+
+
+def _who(row: Run, terminal: Terminal) -> str:
+    approved, proposed = approved_and_proposed(row.approved_by)
+    if not proposed:
+        return approved
+    return str(_words(terminal)["proposed_by"].format(who=approved, proposer=proposed))
 
 
 def _how(row: Run, terminal: Terminal) -> str:

@@ -7,16 +7,26 @@ itself a client of a running `nl2robot serve`.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import logging
+import os
+import signal
 import socket
 import sys
+import threading
+from collections.abc import Iterator
+from types import FrameType
+from typing import Final
 
-from nl2robot.assistant.link import connected
+from nl2robot.assistant.link import Link, connected
 from nl2robot.cli.options.robot import add_ca, trust
 from nl2robot.cli.options.values import whole
 from nl2robot.errors import ExitStatus, UserError
 from robot_api.errors import cause
 from robot_api.server import DEFAULT_PORT
+
+CLOSES_WITHIN: Final = 1.0
+"""Seconds that the robot's server has to take leave when this is told to end."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,7 +62,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         server = assistant_server(link)
         if options.http is None:
-            server.run("stdio")
+            with _ended_by_signals(link), _until_nobody_reads():
+                server.run("stdio")
         else:
             _check_free(options.http)
             print(
@@ -63,6 +74,34 @@ def run(options: argparse.Namespace) -> int:
     finally:
         link.close()
     return ExitStatus.OK
+
+
+@contextlib.contextmanager
+def _ended_by_signals(link: Link) -> Iterator[None]:
+    """A thread that reads stdin keeps Python from ending: so it is ended without more ado."""
+
+    def end(number: int, frame: FrameType | None) -> None:
+        closing = threading.Thread(target=link.close, daemon=True)
+        closing.start()
+        closing.join(CLOSES_WITHIN)
+        os._exit(ExitStatus.INTERRUPTED)
+
+    signals = signal.SIGINT, signal.SIGTERM
+    before = [signal.signal(each, end) for each in signals]
+    try:
+        yield
+    finally:
+        for each, handler in zip(signals, before, strict=True):
+            signal.signal(each, handler)
+
+
+@contextlib.contextmanager
+def _until_nobody_reads() -> Iterator[None]:
+    """An assistant's program that has died reads no answer: that is an end like any other."""
+    try:
+        yield
+    except* BrokenPipeError:
+        pass
 
 
 def _check_free(port: int) -> None:

@@ -259,8 +259,7 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
     here = next(each for each in _members(operator.robot) if each["here"])
     if options.on not in (here["name"], here["id"]):
         show(visible(words["fleet_rehearsed"].format(robot=here["name"])), markup=False)
-    decision, *_ = terminal.decide(review)
-    if decision != "approve":
+    if terminal.settle(review) != "approve":
         show(words["rejected"], markup=False)
         return ExitStatus.NOT_APPROVED
     given = {

@@ -20,7 +20,7 @@ from nl2robot.cli.options.values import user_name, whole
 from nl2robot.cli.terminal import Terminal
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
-from nl2robot.proposals.proposals import KIND, Proposal
+from nl2robot.proposals.proposals import KIND, Proposal, check_waits
 from nl2robot.station.clients import client_of
 from robot_api.server import DEFAULT_PORT
 
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     trust(options)
     terminal = Terminal(language=options.lang)
-    terminal.nobody = "nobody_decides"
+    terminal.nobody, terminal.unclear = "nobody_decides", "undecided_proposal"
     with client_of(options.robot, options.token) as robot:
         operator = Operator(robot, user_name())
         if options.json:
@@ -53,7 +53,9 @@ def run(options: argparse.Namespace) -> int:
             for each in _coming(operator, terminal):
                 decide_on(operator, terminal, each)
         elif options.number is not None:
-            return decide_on(operator, terminal, _one(operator, options.number))
+            found = _one(operator, options.number)
+            check_waits(found)
+            return decide_on(operator, terminal, found)
         else:
             _list(terminal, [each for each in operator.proposals() if each.state == "waiting"])
     return ExitStatus.OK

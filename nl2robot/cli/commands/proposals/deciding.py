@@ -19,16 +19,21 @@ def decide_on(operator: Operator, terminal: Terminal, proposal: Proposal) -> Exi
         show(visible(words["proposed_why"].format(text=proposal.why)), markup=False)
     operator.reviewing(True)
     try:
-        review = operator.check(proposal.program, terminal.language)
-        terminal.show_review(review)
-        decision = terminal.decide(review)[0]
+        program = proposal.program
+        while True:
+            review = operator.check(program, terminal.language)
+            terminal.show_review(review)
+            decision = terminal.settle(review)
+            if decision != "edit":
+                break
+            program = terminal.edit(program)
     finally:
         operator.reviewing(False)
-    if decision != "approve":
+    if decision == "reject":
         operator.decline_proposal(proposal, _reason(terminal))
         show(words["rejected"], markup=False)
         return ExitStatus.NOT_APPROVED
-    decided = operator.approve_proposal(proposal, insists=not review.came_through)
+    decided = operator.approve_proposal(proposal, review, insists=not review.came_through)
     assert decided.run is not None
     try:
         status = operator.wait(decided.run)

@@ -229,7 +229,7 @@ def _approve(options: argparse.Namespace, robot: Chosen, number: int) -> int:
 
 
 def _agreed(terminal: Terminal, review: Review, options: argparse.Namespace) -> bool:
-    return bool(options.yes) or terminal.decide(review)[0] == "approve"
+    return bool(options.yes) or terminal.settle(review) == "approve"
 
 
 # --- what is in the book --------------------------------------------------------------------------
