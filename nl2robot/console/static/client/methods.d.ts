@@ -1938,13 +1938,14 @@ export interface Methods {
       };
     };
     /**
-     * Approve exactly the proposed program with this SHA-256, and begin it at once; `run` is its run. One that does not come to its end in the dry run is refused unless somebody `insists`.
+     * Approve exactly the proposed program with this SHA-256, or the `program` that somebody made of it by hand, and begin it at once; `run` is its run. One that does not come to its end in the dry run is refused unless somebody `insists`.
      */
     approve: {
       params: {
         id: number;
         sha256: string;
         by: string;
+        program?: string;
         insists?: boolean;
       };
       /** A program that somebody proposes, and what came of it. */
