@@ -104,6 +104,10 @@ def test_a_fleet_of_one_lists_runs_and_stops(home: Path, capsys: Said) -> None:
             while not all(each["known"] for each in robot.request("fleet.list", {})["members"]):
                 pass
         with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("builtins.input", lambda *_: "approv")
+            ran = cli.main(["fleet", "run", "--program", str(program), *here])
+            assert ran == ExitStatus.NOT_APPROVED
+            assert "“approv” decides nothing here, so nothing was run" in capsys.readouterr().err
             patch.setattr("builtins.input", lambda *_: "approve")
             ran = cli.main(["fleet", "run", "--program", str(program), *here])
         said = capsys.readouterr().out
