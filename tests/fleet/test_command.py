@@ -126,6 +126,13 @@ def test_a_fleet_of_one_lists_runs_and_stops(home: Path, capsys: Said) -> None:
     log.close()
 
 
+def waits(robot: Robot) -> str | None:
+    """Why the only robot of its fleet begins nothing."""
+    [ada] = robot.request("fleet.list", {})["members"]
+    told: str | None = (ada["standing"] or {}).get("waits")
+    return told
+
+
 @pytest.mark.parametrize("begun", [True, False], ids=["begun", "looked for"])
 def test_ctrl_c_calls_off_what_was_sent_or_stops_who_does_it(
     home: Path, capsys: Said, monkeypatch: pytest.MonkeyPatch, begun: bool
@@ -156,7 +163,7 @@ def test_ctrl_c_calls_off_what_was_sent_or_stops_who_does_it(
             pass
         if not begun:  # whoever was just stopped is given nothing
             robot.stop()
-            while robot.request("fleet.list", {})["members"][0]["standing"].get("waits") is None:
+            while waits(robot) is None:
                 pass
         here = ("--robot", f"ws://{station.address}")
         ran = cli.main(["fleet", "run", "--program", str(program), *here])
@@ -174,10 +181,6 @@ def test_when_all_are_stopped_nothing_waits_and_who_was_stopped_rests_when_start
 ) -> None:
     log = RunLog(home / "runs.sqlite")
     fleet, ward = FleetAddress("Ada", key=b"k" * 40), load_world("ward")
-
-    def waits(robot: Robot) -> str | None:
-        [ada] = robot.request("fleet.list", {})["members"]
-        return (ada["standing"] or {}).get("waits")
 
     with (
         simulated_station(ward, log, fleet=fleet) as station,

@@ -32,6 +32,8 @@ from robot_api.errors import InvalidCall
 from robot_api.local_time import local_zone
 from robot_api.server import DEFAULT_PORT
 
+ENDS_WITHIN: Final = 10.0
+"""Seconds that a robot has to say that what it did is over."""
 ACTIONS: Final = ("list", "run", "call-off", "stop", "key", "trust", "distrust")
 SHORT: Final = 6
 """Letters of an id by which an errand is told apart."""
@@ -325,7 +327,7 @@ def _called_back(operator: Operator, errand: str, words: Mapping[str, Any]) -> s
         found = msgspec.convert(now, Errand)
         if found.open and found.robot is not None:
             operator.robot.request("fleet.stop", {"robot": found.robot})
-    now = operator.robot.request("fleet.wait", {"errand": errand, "timeout": 2})
+    now = operator.robot.request("fleet.wait", {"errand": errand, "timeout": ENDS_WITHIN})
     return _errand_state(msgspec.convert(now, Errand), words)
 
 
