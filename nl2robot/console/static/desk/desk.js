@@ -170,6 +170,20 @@ function changeIt(said) {
   line.focus();
 }
 
+/** Why somebody rejects a proposal: what they have typed is there still when the review is drawn anew. */
+function keepReason() {
+  const typed = new Map();
+  document.addEventListener('input', ({target}) => {
+    if (target.id === 'why-not') typed.set(target.dataset.proposal, target.value);
+  });
+  const putBack = () => {
+    const field = document.getElementById('why-not');
+    const kept = typed.get(field?.dataset.proposal);
+    if (kept && !field.value) field.value = kept;
+  };
+  new MutationObserver(putBack).observe(document.querySelector('.desk-review'), {childList: true, subtree: true});
+}
+
 function openDecisions() {
   const approve = (allTheSame) => {
     if (present.now.run !== null) return alertOf(Error(words.busy));
@@ -254,6 +268,7 @@ if (role === 'operator') {
   appears('#composer').then(openComposer);
   appears('#standing-in').then((element) => standIn(element, {wire, words, language, who: pageData.who}));
   openDecisions();
+  appears('.desk-review').then(keepReason);
   const tellShade = () => tell('desk-shade', {dark: document.documentElement.dataset.look === 'dark'});
   appears('.desk-editor').then((editor) => {
     const review = editor.closest('.desk-review');
