@@ -14,12 +14,14 @@ from robot_api.server import Context as CallContext
 from robot_api.server import Service
 from robot_api.serving.dispatch import Lane
 from robot_api.serving.roles import Right
+from sandbox.limits import MAX_PROGRAM
 
 NUMBER: Final = {"type": "integer", "minimum": 1}
 """Of a run, an appointment, a proposal."""
 LANGUAGE: Final = {"type": "string", "pattern": "^[a-z]{2}$"}
 NAME: Final = {"type": "string", "minLength": 1, "maxLength": 200}
 """Of whoever does something, or of a robot."""
+PROGRAM: Final = {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM}
 SHA256: Final = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
 
 

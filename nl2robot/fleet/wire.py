@@ -17,11 +17,10 @@ from nl2robot.fleet.messages import About, Standing
 from nl2robot.review.review import digest
 from nl2robot.run.runner import Runner
 from nl2robot.schedule.findings import encoded, findings_of
-from nl2robot.wire import LANGUAGE, NAME, SHA256, service, service_of_call
+from nl2robot.wire import LANGUAGE, NAME, PROGRAM, SHA256, service, service_of_call
 from robot_api.errors import AccessDenied
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
-from sandbox.limits import MAX_PROGRAM
 
 EVENTS: Final[Mapping[str, str]] = {
     "fleet": "members and errands, as fleet.list tells them, when something has changed; at most"
@@ -31,7 +30,6 @@ EVENTS: Final[Mapping[str, str]] = {
 }
 WAITS: Final = 60.0
 """Seconds that `fleet.wait` waits at most."""
-_PROGRAM: Final = {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM}
 _ID: Final = {"type": "string", "pattern": "^[0-9a-f]{16}$"}
 
 
@@ -164,7 +162,7 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             "Tell the id of the robot of that name or id. Refuses one that is none of the fleet,"
             " has another floor, or lacks a method that the program calls; whether it is free now"
             " is nothing to this.",
-            {"robot": NAME, "program": _PROGRAM},
+            {"robot": NAME, "program": PROGRAM},
             "robot program",
             observes=True,
             result=str,
@@ -175,7 +173,7 @@ def fleet_services(fleet: Fleet, runner: Runner) -> dict[str, Service]:
             " that does it best, or by the `robot` of that name or id. That robot reviews it again"
             " before it begins. Returns what is to be done, which `fleet.wait` waits for.",
             {
-                "program": _PROGRAM,
+                "program": PROGRAM,
                 "sha256": SHA256,
                 "by": NAME,
                 "sentence": {"type": "string", "maxLength": MAX_TEXT},

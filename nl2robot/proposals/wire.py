@@ -7,13 +7,11 @@ from typing import Any, Final
 
 from nl2robot.errors import UserError
 from nl2robot.proposals.proposals import HOLDS, Made, Proposal, Proposals
-from nl2robot.wire import LANGUAGE, NAME, NUMBER, SHA256, service, service_of_call
+from nl2robot.wire import LANGUAGE, NAME, NUMBER, PROGRAM, SHA256, service, service_of_call
 from robot_api.methods import MAX_TEXT
 from robot_api.server import Context, Service
-from sandbox.limits import MAX_PROGRAM
 
 _TEXT: Final = {"type": "string", "maxLength": MAX_TEXT}
-_PROGRAM: Final = {"type": "string", "minLength": 1, "maxLength": MAX_PROGRAM}
 
 
 _MARKS: Final = str.maketrans(dict.fromkeys('“”„«»"‟❝❞〝〞＂', "'"))
@@ -53,7 +51,7 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
             " they should know. It is reviewed at once; one with an error is refused. It runs when"
             " somebody approves it, and waits ten minutes for that.",
             {
-                "program": _PROGRAM,
+                "program": PROGRAM,
                 "sentence": {**_TEXT, "minLength": 1},
                 "by": NAME,
                 "why": _TEXT,
@@ -110,7 +108,7 @@ def proposal_services(proposals: Proposals) -> dict[str, Service]:
                 "id": NUMBER,
                 "sha256": SHA256,
                 "by": NAME,
-                "program": _PROGRAM,
+                "program": PROGRAM,
                 "insists": {"type": "boolean"},
             },
             "id sha256 by",

@@ -192,17 +192,6 @@ def test_a_training_of_another_recipe_is_not_gone_on_with(
     assert "by another recipe. Delete that folder" in capsys.readouterr().err
 
 
-def test_ctrl_c_waits_for_what_has_to_be_whole() -> None:
-    pytest.importorskip("torch")
-    from nl2robot.training.planner.train import whole
-
-    done = []
-    with pytest.raises(KeyboardInterrupt), whole():
-        os.kill(os.getpid(), signal.SIGINT)
-        done.append("to its end")
-    assert done == ["to its end"]
-
-
 # --- measuring
 
 

@@ -58,7 +58,7 @@ class Kept:
 
     @property
     def course(self) -> Path:
-        """How it went: `train.Course`."""
+        """How it went: `course.Course`."""
         return self.folder / "course.json"
 
     @property

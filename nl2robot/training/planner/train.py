@@ -9,10 +9,8 @@ depend on that.
 from __future__ import annotations
 
 import math
-import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
@@ -20,6 +18,7 @@ import msgspec
 import torch
 from torch.nn import functional
 
+from nl2robot.ctrl_c import ctrl_c_later
 from nl2robot.errors import UserError
 from nl2robot.language_model.changes import write
 from nl2robot.training.planner.course import Course, Measured, Steps
@@ -93,7 +92,7 @@ class Learner:
         self.optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.changes(), 1.0)
-        with whole():
+        with ctrl_c_later():
             self.optimiser.step()
             self.course.step += 1
             self.course.seconds += time.monotonic() - began
@@ -144,7 +143,7 @@ class Learner:
             "course": msgspec.to_builtins(self.course),
         }
         new = self.kept.state.with_suffix(".new")
-        with whole():
+        with ctrl_c_later():
             torch.save(state, new)
             new.replace(self.kept.state)
 
@@ -170,19 +169,6 @@ class Learner:
         new = self.kept.learned.with_suffix(".new.npz")
         write(learned, new)
         new.replace(self.kept.learned)
-
-
-@contextmanager
-def whole() -> Iterator[None]:
-    """Ctrl-C waits until what is done here is done."""
-    came: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if came:
-        raise KeyboardInterrupt
 
 
 def device_name() -> str:

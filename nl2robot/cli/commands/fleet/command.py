@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
-import signal
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 import msgspec
@@ -16,6 +14,7 @@ from nl2robot.cli.options.robot import add_ca, trust
 from nl2robot.cli.options.sentence import add_language, add_planner
 from nl2robot.cli.options.values import read_program, user_name, words
 from nl2robot.cli.terminal import Terminal
+from nl2robot.ctrl_c import ctrl_c_later
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.fleet.book import Errand
 from nl2robot.fleet.keeping import Kept
@@ -274,12 +273,12 @@ def _run(options: argparse.Namespace, terminal: Terminal, operator: Operator) ->
     }
     errand: Errand | None = None
     try:
-        with _ctrl_c_later():  # once it is given, it is known what is to be called off
+        with ctrl_c_later():  # once it is given, it is known what is to be called off
             errand = msgspec.convert(operator.robot.request("fleet.run", given), Errand)
         errand, robot = _watched(operator, terminal, errand)
     except KeyboardInterrupt:
         if errand is not None:
-            with _ctrl_c_later():
+            with ctrl_c_later():  # pressed again, it keeps no robot from being stopped
                 show(visible(_called_back(operator, errand.id, words)), markup=False)
         raise
     if errand.robot_name is not None and robot is None:
@@ -302,19 +301,6 @@ def _watched(operator: Operator, terminal: Terminal, errand: Errand) -> tuple[Er
         waits = {"errand": errand.id, "timeout": 1.0 if robot is None else WAITS}
         errand = msgspec.convert(operator.robot.request("fleet.wait", waits), Errand)
     return errand, robot
-
-
-@contextmanager
-def _ctrl_c_later() -> Iterator[None]:
-    """Whoever presses Ctrl-C again, or too early, does not keep a robot from being stopped."""
-    pressed: list[int] = []
-    before = signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-    if pressed:
-        raise KeyboardInterrupt
 
 
 def _called_back(operator: Operator, errand: str, words: Mapping[str, Any]) -> str:
