@@ -766,3 +766,19 @@ def test_what_is_done_for_another_answer_is_not_done_for_this_one(
     about_yes, _, about_no = made.rpartition('"no"' if language == "en" else '"nein"')
     assert about_yes.count("goto") == steps
     assert "goto" not in about_no and "say(" in about_no, made
+
+
+@pytest.mark.parametrize(
+    ("language", "order", "wish"),
+    [
+        ("en", "go to the lobby and wish everybody a good evening there", "Good evening."),
+        ("de", "fahr in die Lobby und wünsch allen dort einen guten Abend", "Einen guten Abend."),
+        (
+            "fr",
+            "va à la réception et souhaite une bonne soirée à tout le monde là-bas",
+            "Bonne soirée.",
+        ),
+    ],
+)
+def test_where_it_is_wished_is_no_part_of_the_wish(language: str, order: str, wish: str) -> None:
+    assert f'robot.say("{wish}")' in program(language, order)
