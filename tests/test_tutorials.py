@@ -16,7 +16,10 @@ DOCS = ROOT / "docs"
 COURSE = DOCS / "teaching.md"
 OTHERS = [DOCS / "it.md", DOCS / "privacy.md", DOCS / "clients.md"]
 PAGES = [*sorted(DOCS.rglob("tutorials/*.md")), COURSE, *OTHERS]
-NEEDS = {"javascript.md": "node"}
+NEEDS = {
+    "javascript.md": ("node", "It is followed with Node 20 or newer: make node"),
+    "broker.md": ("mosquitto", "It is followed with a broker: apt-get install mosquitto"),
+}
 """What else has to be there to follow a page."""
 
 
@@ -24,7 +27,7 @@ NEEDS = {"javascript.md": "node"}
 @pytest.mark.timeout(400)  # some have a dozen runs
 def test_a_page_says_what_happens(page: Path, tmp_path: Path) -> None:
     if page.name in NEEDS:
-        tool(NEEDS[page.name], "It is followed with Node 20 or newer: make node")
+        tool(*NEEDS[page.name])
     assert play(page, tmp_path) > 2
 
 
