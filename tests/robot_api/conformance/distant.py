@@ -66,7 +66,11 @@ class DistantDriver:
         stop.check()
         self.link.check()
         stop.on_set(self.robot.cancel)
-        return getattr(self.robot, method)(**arguments)
+        try:
+            return getattr(self.robot, method)(**arguments)
+        except LostConnection:
+            self.lost()  # who hears of the error has heard of the loss, whatever the watch does
+            raise
 
     def stop(self, because: str) -> None:
         self.hub.publish("stopping", because=because)

@@ -328,7 +328,7 @@ def test_a_stop_that_is_confirmed_before_it_arrives(robot: Address) -> None:
 
 def test_a_slow_link_that_is_taken_for_a_lost_one(robot: Address) -> None:
     class Nervous(DistantDriver):
-        silence = 0.1
+        silence = 0.2  # an answer takes twice that
 
     look = looking_at(Nervous, robot)
     look.slow()
