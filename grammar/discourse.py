@@ -7,8 +7,8 @@ function for every meaning that the rules name.
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
@@ -23,14 +23,15 @@ from grammar.memory import (
     Branched,
     Command,
     Deliveries,
+    Loops,
     People,
     Reports,
-    Rounds,
+    Round,
     Scene,
 )
 from grammar.naming import joined_up, naming
 from grammar.plan import Ask, Call, Number, Recall, Remember, Sentence, Step, Text, Value
-from grammar.referents import Claim, Meeting, Round, Thing, Where
+from grammar.referents import Claim, Meeting, Thing, Where
 from grammar.tokens import Token
 from robot_api.methods import METHODS
 
@@ -55,9 +56,6 @@ ONE_ONLY: Final = frozenset({"person_ref", "thing", "place"})
 """Parts that are a single one wherever a meaning asks for them."""
 
 
-ROOMS: Final = (Scene, People, Answers, Deliveries, Reports, Branch, Rounds, Command)
-
-
 @dataclass
 class Discourse:
     """The sentence, what it has spoken of so far, and the steps that were made of it so far."""
@@ -72,7 +70,8 @@ class Discourse:
     deliveries: Deliveries = field(default_factory=Deliveries)
     reports: Reports = field(default_factory=Reports)
     branch: Branch = field(default_factory=Branch)
-    rounds: Rounds = field(default_factory=Rounds)
+    loops: Loops = field(default_factory=Loops)
+    round: Round = field(default_factory=Round)
     command: Command = field(default_factory=Command)
     depth: int = 0
     """How many sequences the present one is in, itself included."""
@@ -83,12 +82,12 @@ class Discourse:
     around: list[Steps] = field(default_factory=list)
     """Those of the sequences around it, the outermost first."""
     needs_start: bool = False
-    variables: set[str] = field(default_factory=set)
-    background: list[str] = field(default_factory=list)
+    variables: frozenset[str] = frozenset()
+    background: tuple[str, ...] = ()
     """What was said besides, in its words, and asks for nothing."""
-    whereabouts: list[tuple[str, Value]] = field(default_factory=list)
+    whereabouts: tuple[tuple[str, Value], ...] = ()
     """What of it says no more than where somebody or something is, and that place."""
-    assumptions: list[str] = field(default_factory=list)
+    assumptions: tuple[str, ...] = ()
     """What was assumed without being said; each lowers the confidence."""
 
     # --- parts of the parse
@@ -97,13 +96,13 @@ class Discourse:
         """What a part of the parse means."""
         if isinstance(part, Leaf):
             return self._leaf(part)
-        if id(part) in self.rounds.bound:
-            return self.rounds.bound[id(part)]
+        if id(part) in self.loops.bound:
+            return self.loops.bound[id(part)]
         if SETTING in part.parts:
             return MEANINGS[EACH](self, part)
         meaning = MEANINGS.get(part.means)
         if part.production.rule in COMMANDS and (meaning or part.means in METHODS):
-            self.command.place_before = self.scene.place
+            self.command = replace(self.command, place_before=self.scene.place)
             return MEANINGS[EACH](self, part)
         if meaning is not None:
             return meaning(self, part)
@@ -116,22 +115,30 @@ class Discourse:
 
     def tried(self, part: Leaf | Node) -> Any:
         """What a part of the parse would mean here, and nothing else is changed."""
-        rooms = [self, *(value for value in vars(self).values() if isinstance(value, ROOMS))]
-        known = [(room, dict(vars(room))) for room in rooms]
-        before = [
-            (value, copy.copy(value))
-            for _, values in known
-            for value in values.values()
-            if isinstance(value, list | dict | set)
-        ]
+        before = dict(vars(self))
+        self.done, self.begins = self.done.copy(), self.begins.copy()
+        self.around = [steps.copy() for steps in self.around]
         try:
             return self.build(part)
         finally:
-            for room, values in known:
-                vars(room).update(values)
-            for value, kept in before:
-                value.clear()
-                value.extend(kept) if isinstance(value, list) else value.update(kept)
+            vars(self).update(before)
+
+    def bind(self, part: Leaf | Node, meant: Any) -> None:
+        """From now on a part of the parse means this."""
+        self.loops = replace(self.loops, bound={**self.loops.bound, id(part): meant})
+
+    @contextmanager
+    def bound(self, part: Leaf | Node, meant: Any) -> Iterator[None]:
+        """Within, a part of the parse means this."""
+        outer = self.loops.bound
+        self.bind(part, meant)
+        try:
+            yield
+        finally:
+            bound = {of: each for of, each in self.loops.bound.items() if of != id(part)}
+            if id(part) in outer:
+                bound[id(part)] = outer[id(part)]
+            self.loops = replace(self.loops, bound=bound)
 
     def one_command(self, node: Node) -> Steps:
         """A command, where its noun phrases stand for one each."""
@@ -214,7 +221,8 @@ class Discourse:
         """Some tokens speak of a person by a pronoun: now it is known which."""
         gender = self.gender(start, end)
         if gender is not None and person.known and person.text:
-            self.people.genders.setdefault(person.text, gender)
+            genders = {person.text: gender, **self.people.genders}
+            self.people = replace(self.people, genders=genders)
 
     def may_be(self, person: Thing, start: int, end: int) -> bool:
         """Whether a pronoun may stand for a person, by how that person was spoken of before."""
@@ -347,25 +355,46 @@ class Discourse:
         while candidate in self.variables:
             number += 1
             candidate = f"{name}{number}"
-        self.variables.add(candidate)
+        self.variables |= {candidate}
         return candidate
+
+    def names(self, *names: str) -> None:
+        """Somebody was named."""
+        self.people = replace(self.people, named=(*self.people.named, *names))
+
+    def first_of_all(self, *steps: Step) -> None:
+        """The condition that is made needs these steps before it can be checked."""
+        self.command = replace(self.command, pending=(*self.command.pending, *steps))
+
+    def resolves(self, tokens: Iterable[int]) -> None:
+        """These tokens of a free text stand for what is only known when the program runs."""
+        self.command = replace(self.command, resolved=self.command.resolved | {*tokens})
+
+    def notes(self, what: tuple[Any, ...], variable: str) -> None:
+        """Something of a poll is noted in a variable."""
+        self.answers = replace(self.answers, notes={**self.answers.notes, what: variable})
 
     def went(self, place: Value) -> None:
         """The robot is at this place now."""
-        self.scene.at = self.scene.place = place
-        if self.scene.person is not None and self.scene.person.known and self.scene.person.here:
-            self.scene.person = replace(self.scene.person, here=False)  # who is left behind
-        self.scene.person_on_arrival = self.scene.person
-        self.scene.away = False
-        self.scene.looked_in = None
-        self.scene.at_furniture = None
-        self.scene.with_person = self.scene.led = None
+        person = self.scene.person
+        if person is not None and person.known and person.here:
+            person = replace(person, here=False)  # who is left behind
+        self.scene = replace(
+            self.scene.arrived(place),
+            person=person,
+            person_on_arrival=person,
+            away=False,
+            looked_in=None,
+            at_furniture=None,
+            with_person=None,
+            led=None,
+        )
 
     def came_back(self) -> None:
         """The robot has gone back to the speaker by itself: "there" is still where it was."""
         place = self.scene.place
         self.went(self.start())
-        self.scene.place = place
+        self.scene = replace(self.scene, place=place)
 
     def known_by_now(self) -> tuple[Any, ...]:
         """What could be told: the last answer, code and report."""

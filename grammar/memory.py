@@ -1,22 +1,25 @@
-"""What a discourse remembers, by what it is about.
+"""What a discourse remembers, by what it is about: the rooms of `grammar.discourse.Discourse`.
 
-Each of these is a part of `grammar.discourse.Discourse`; meanings read and write them by name:
-`d.scene.person` is whom "her" stands for, `d.answers.last` the variable with the last answer.
+Meanings read them by name: `d.scene.person` is whom "her" stands for, `d.answers.last` the variable
+with the last answer. No room ever changes; who learns something puts another in its place
+(`d.scene = d.scene.speaking_of(thing)`, `d.answers = replace(d.answers, last=name)`), so that
+whoever has kept one, to go back to or to begin a branch with, has it as it was.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from grammar.chart import Node
 from grammar.plan import Step, Text, Value
-from grammar.referents import Claim, Meeting, Round, Thing, Where
+from grammar.referents import Claim, Meeting, Thing, Where
 
 Steps = list[Step]
 
 
-@dataclass
+@dataclass(frozen=True)
 class Scene:
     """What the robot and the speaker have before them; each branch of a condition begins with the
     same scene."""
@@ -43,7 +46,7 @@ class Scene:
     """Whom the robot has led to where it is."""
     holding: Value | None = None
     """What is in its hand."""
-    now_at: dict[Value, Value] = field(default_factory=dict)
+    now_at: Mapping[Value, Value] = field(default_factory=dict)
     """Where things are by now that were put down somewhere."""
     delivered: Value | None = None
     """A thing that was brought to the speaker without their saying where to."""
@@ -51,7 +54,7 @@ class Scene:
     """Where it was picked up."""
     at_furniture: str | None = None
     """The furniture that a command is about: "on the table, ..."."""
-    left: dict[Value, Value] = field(default_factory=dict)
+    left: Mapping[Value, Value] = field(default_factory=dict)
     """Where people were led to."""
     missing: Thing | None = None
     """What was looked for in vain: "if not, look in the kitchen"."""
@@ -60,20 +63,36 @@ class Scene:
     group: Value | None = None
     """Several people spoken of together: "both", "each of them"."""
 
-    def copy(self) -> Scene:
-        """The scene as it is now, to go back to it."""
-        return replace(self)
+    def speaking_of(self, thing: Thing | None) -> Scene:
+        """A thing was spoken of: it is "it"."""
+        return replace(self, thing=thing, thing_last=True)
+
+    def speaking_of_person(self, person: Thing | None) -> Scene:
+        """Somebody was spoken of: it is "her"."""
+        return replace(self, person=person, thing_last=False)
+
+    def speaking_as(self, before: Scene) -> Scene:
+        """Whatever was spoken of since, "it" and "her" are what they were."""
+        return replace(self, thing=before.thing, person=before.person, thing_last=before.thing_last)
+
+    def arrived(self, place: Value | None) -> Scene:
+        """The robot is at a place, and that is "there"."""
+        return replace(self, at=place, place=place)
+
+    def wandered(self) -> Scene:
+        """The robot may be at any of several places, and before nobody."""
+        return replace(self, at=None, with_person=None)
 
 
-@dataclass
+@dataclass(frozen=True)
 class People:
     """Who was spoken of, and as what."""
 
     last_named: Thing | None = None
     """Who was named last, in whichever branch: "him" is one person."""
-    genders: dict[str, str] = field(default_factory=dict)
+    genders: Mapping[str, str] = field(default_factory=dict)
     """What people were called after they were named: "ask Bob whether he ..." makes Bob a "he"."""
-    named: list[str] = field(default_factory=list)
+    named: tuple[str, ...] = ()
     """Who was named so far."""
     awaited: Any = None
     """The step that waited for somebody last (`grammar.meanings.in_time.Awaited`)."""
@@ -94,7 +113,7 @@ class People:
     each time, or only "if anybody comes"."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Answers:
     """What was asked, and what is known of the answers."""
 
@@ -122,7 +141,7 @@ class Answers:
     """The variable with the code that was scanned last."""
     heard: str | None = None
     """The variable with what was heard last, of nobody in particular."""
-    surveys: list[Any] = field(default_factory=list)
+    surveys: tuple[Any, ...] = ()
     """What was asked so far (`grammar.meanings.surveys.Survey`)."""
     put: Any = None
     """The last question (`Survey`) that the speaker put themselves, and waits to have answered."""
@@ -138,7 +157,7 @@ class Answers:
     """The variable with the answer of somebody who, in this branch, is not there to give it."""
     counting: Any = None
     """The answers that the loop around has to count."""
-    notes: dict[tuple[Any, ...], str] = field(default_factory=dict)
+    notes: Mapping[tuple[Any, ...], str] = field(default_factory=dict)
     """The variables with what is noted of a poll, by what that is (`grammar.meanings.polls`)."""
     said: Any = None
     """The answer that was last told of (`grammar.meanings.answers.Wanted`): "... that is"."""
@@ -150,7 +169,7 @@ class Answers:
     """Whether a question is put to each of several: who wants tea is then whether they do."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Deliveries:
     """What is fetched and brought, and for whom."""
 
@@ -170,19 +189,19 @@ class Deliveries:
     """The last step, if it brings somebody here for no other reason than that they were fetched."""
     taken_from: Where | None = None
     """Where the things of a command are taken from, if that is said of no noun phrase."""
-    said_to_be: list[Thing] = field(default_factory=list)
+    said_to_be: tuple[Thing, ...] = ()
     """Things that were said to be somewhere (`grammar.meanings.sources`)."""
     fetching: Any = None
     """The last command that takes things of which nobody has said where they are."""
     mislaid: Value | None = None
     """What somebody was said to wait or to look for: where "it" is then tells of that."""
-    listed_last: Steps = field(default_factory=list)
+    listed_last: tuple[Step, ...] = ()
     """The last steps that look for several things and tell which there are."""
     collected: Thing | None = None
     """Several things that are to be collected, before it was said where to."""
     shown: Value | None = None
     """What somebody was only to see or to sign, and is still in the robot's hand."""
-    offers: list[Any] = field(default_factory=list)
+    offers: tuple[Any, ...] = ()
     """What was offered to somebody so far (`grammar.meanings.offers.Offer`)."""
     listed_before: tuple[Thing, ...] = ()
     """The things of the last list."""
@@ -194,7 +213,7 @@ class Deliveries:
     """The loop that brings several things to the speaker without their saying where to."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Reports:
     """What was found out, and to whom it was told."""
 
@@ -238,7 +257,7 @@ class Branched:
     """Whether nothing was said of the other branch, and what is done there only assumed."""
 
 
-@dataclass
+@dataclass(frozen=True)
 class Branch:
     """What the last condition was about, and what holds in the branch that is made."""
 
@@ -252,15 +271,13 @@ class Branch:
     """What is so in this branch of a condition."""
 
 
-@dataclass
-class Rounds:
+@dataclass(frozen=True)
+class Loops:
     """The loops around what is made, and what their variables stand for."""
 
     in_loop: bool = False
     """Whether what is made is done once for each of several."""
-    round: Round = field(default_factory=Round)
-    """What is known of the round of places that is made."""
-    bound: dict[int, Any] = field(default_factory=dict)
+    bound: Mapping[int, Any] = field(default_factory=dict)
     """What noun phrases that speak of several stand for within their loop, by their `id`."""
     taking_apart: bool = False
     """Whether a noun phrase that speaks of several is made for the loop over them."""
@@ -270,11 +287,34 @@ class Rounds:
     """The place of the loop around, if it is one over places."""
     at_people: bool = False
     """Whether the robot is where it is to meet people, so that things need not be there, too."""
-    loops: dict[str, Value] = field(default_factory=dict)
+    places: Mapping[str, Value] = field(default_factory=dict)
     """The places that loops go round, by their variables."""
 
 
-@dataclass
+@dataclass(frozen=True)
+class Round:
+    """What is known of the round of places that is made, or was made last."""
+
+    lookout: Any = None
+    """What a round looks for that nobody was told of (`grammar.meanings.lookouts.Lookout`)."""
+    stop: Any = None
+    """What is looked for at this stop of a round (`grammar.meanings.rounds.Trait`)."""
+    here: Value | None = None
+    """The stop of a round that a clause after it is about: "if one has none, come back and tell me
+    which one"."""
+    present: Any = None
+    """The news of who of several people is in (`grammar.meanings.presence`)."""
+    present_found: Any = None
+    """The variable with which of them are in, and who they are."""
+    such: str | None = None
+    """The variable with the place that was looked for, as the first that is so."""
+    told_of: bool = False
+    """Whether somebody is only to be told of which places a condition is true."""
+    claims: Any = None
+    """What is so of them, and what if not (`grammar.meanings.some_places.Claims`)."""
+
+
+@dataclass(frozen=True)
 class Command:
     """The command that is made."""
 
@@ -284,9 +324,9 @@ class Command:
     """Where it was before the command before this was carried out."""
     at_place: Value | None = None
     """The place that a question is about: "in the kitchen, ..."."""
-    resolved: set[int] = field(default_factory=set)
+    resolved: frozenset[int] = frozenset()
     """The tokens of free texts that stand for what is only known when the program runs."""
-    pending: Steps = field(default_factory=list)
+    pending: tuple[Step, ...] = ()
     """Steps that a condition needs before it can be checked."""
-    moments: Steps = field(default_factory=list)
+    moments: tuple[Step, ...] = ()
     """The waits whose length was not said."""

@@ -103,7 +103,7 @@ class SentenceReader:
             scene=Scene(
                 thing=self.context.thing, person=self.context.person, place=self.context.place
             ),
-            people=People(named=self._named_before()),
+            people=People(named=tuple(self._named_before())),
             deliveries=Deliveries(source=self.context.source),
             command=Command(origin=self.context.origin),
         )

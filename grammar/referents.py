@@ -91,26 +91,3 @@ class Claim:
     saying: Step
     known: tuple[Any, ...]
     """What was known besides (`known_by_now`): where more is found out, that is told instead."""
-
-
-@dataclass
-class Round:
-    """What is known of the round of places that is made, or was made last."""
-
-    lookout: Any = None
-    """What a round looks for that nobody was told of (`grammar.meanings.lookouts.Lookout`)."""
-    stop: Any = None
-    """What is looked for at this stop of a round (`grammar.meanings.rounds.Trait`)."""
-    here: Value | None = None
-    """The stop of a round that a clause after it is about: "if one has none, come back and tell me
-    which one"."""
-    present: Any = None
-    """The news of who of several people is in (`grammar.meanings.presence`)."""
-    present_found: Any = None
-    """The variable with which of them are in, and who they are."""
-    such: str | None = None
-    """The variable with the place that was looked for, as the first that is so."""
-    told_of: bool = False
-    """Whether somebody is only to be told of which places a condition is true."""
-    claims: Any = None
-    """What is so of them, and what if not (`grammar.meanings.some_places.Claims`)."""

@@ -92,9 +92,9 @@ def routine(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("routine_unreviewed", name=called.name))
     plan = _plan_of(called, d)
     if d.needs_start or node.end < len(d.tokens) - 1:
-        d.variables.add(START)  # the sentence around may need the name
+        d.variables |= {START}  # the sentence around may need the name
     steps = with_own_names(d, plan)
-    d.scene.at = d.scene.place = d.scene.thing = d.scene.person = d.scene.with_person = None
+    d.scene = replace(d.scene, at=None, place=None, thing=None, person=None, with_person=None)
     if steps and isinstance(steps[-1], Call) and steps[-1].method == "goto":
         place = steps[-1].arguments.get("place")
         if isinstance(place, Text):
@@ -115,7 +115,7 @@ def _plan_of(called: Routine, d: Discourse) -> Plan:
     if inner.plan is None:
         raise _broken(called, d, inner.message or d.language.phrase("not_understood_at_all"))
     if inner.confidence < 1:
-        d.assumptions.append(called.name)
+        d.assumptions += (called.name,)
     return inner.plan
 
 

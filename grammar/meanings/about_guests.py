@@ -56,7 +56,7 @@ def host_told(d: Discourse, node: Node) -> None:
     if host is None or d.done or part is None or what_it_means(part) != "person_pronoun":
         return
     if d.may_be(host, part.start, part.end):
-        d.scene.person = host
+        d.scene = replace(d.scene, person=host)
 
 
 def who_is_told(d: Discourse, node: Node) -> Thing | None:

@@ -8,7 +8,7 @@ other case is the other branch. In that branch a message or a question without w
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps, Thing
@@ -112,18 +112,10 @@ def undelivered(d: Discourse, person: Thing | None) -> Steps | None:
     part = node.parts.get("person_ref")
     if not isinstance(part, Node):
         return None
-    d.answers.undelivered = None
-    outer = d.rounds.bound.get(id(part))
-    d.rounds.bound[id(part)] = person
-    try:
+    d.answers = replace(d.answers, undelivered=None)
+    with d.bound(part, person):
         steps: Steps = d.build(node)
-        d.branch.claim = (
-            None  # what is told from now on is what was asked, and not that they are not there
-        )
-    finally:
-        del d.rounds.bound[id(part)]
-        if outer is not None:
-            d.rounds.bound[id(part)] = outer
+        d.branch = replace(d.branch, claim=None)
     return steps
 
 
@@ -131,5 +123,6 @@ def answer_variable(d: Discourse, options: tuple[str, ...]) -> str | None:
     """The name for an answer that somebody gives instead of another person: the same."""
     if d.answers.instead_of is None or d.answers.options != options:
         return None
-    name, d.answers.instead_of = d.answers.instead_of, None
+    name = d.answers.instead_of
+    d.answers = replace(d.answers, instead_of=None)
     return name

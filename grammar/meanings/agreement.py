@@ -58,7 +58,7 @@ def same_answers(d: Discourse, node: Node) -> Condition:
     if len(surveys) != 2 or len(names) != 2:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
-    d.answers.agreed = (last.call, Recall(names[0]))
+    d.answers = replace(d.answers, agreed=(last.call, Recall(names[0])))
     return Compare(Recall(names[0]), "==", Recall(names[1]))
 
 
@@ -72,10 +72,12 @@ def _all_alike(d: Discourse, survey: Survey) -> Condition:
     other = If(Compare(answer, "!=", common), (Remember(alike.name, Truth(False)),))
     notes: list[Step] = [If(first, (Remember(common.name, answer),), (other,))]
     before: list[Step] = [Remember(common.name, Text("")), Remember(alike.name, Truth(True))]
-    d.answers.agreed = (survey.call, common)
+    d.answers = replace(d.answers, agreed=(survey.call, common))
     if d.scene.thing is not None and d.scene.thing.value == answer:
-        d.scene.thing = replace(d.scene.thing, value=common)  # "if they want the same, bring it"
-    d.answers.last = common.name
+        d.scene = replace(
+            d.scene, thing=replace(d.scene.thing, value=common)
+        )  # "if they want the same, bring it"
+    d.answers = replace(d.answers, last=common.name)
     named = _named(d, survey)
     condition: Condition = Holds(alike)
     if named is not None:

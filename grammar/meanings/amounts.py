@@ -40,7 +40,7 @@ def clock_time(d: Discourse, node: Node) -> str:
     """A time of day as "HH:MM"."""
     time, guessed = time_said(d, node)
     if guessed:
-        d.assumptions.append("pm")
+        d.assumptions += ("pm",)
     return time
 
 
@@ -151,7 +151,7 @@ def day_time(d: Discourse, node: Node) -> Steps:
     when = moment_said(d, node)
     time, guessed = time_said(d, clock, node.production.fixed.get("half"))
     if guessed:
-        d.assumptions.append("pm")
+        d.assumptions += ("pm",)
     arguments: dict[str, Value] = {"time": Text(time)}
     if when.weekdays:
         arguments["weekday"] = Text(WEEKDAYS[when.weekdays[0]])

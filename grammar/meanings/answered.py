@@ -77,7 +77,7 @@ def about_answer(d: Discourse, node: Node) -> Condition | None:
         meant = wanted_answer(d, survey, Said(node.start, node.end), strict=True)
     except NotUnderstood:
         return None
-    if in_loop(d, survey.call) and not d.rounds.in_loop:
+    if in_loop(d, survey.call) and not d.loops.in_loop:
         return None
     return meant.given(survey)
 
@@ -153,11 +153,12 @@ def ask_openly(d: Discourse) -> None:
     arguments = {name: each for name, each in last.call.arguments.items() if name != "options"}
     openly = Call(last.call.method, arguments, save_as=last.call.save_as)
     d.done[:] = exchanged(d.done, last.call, [openly])
-    d.answers.surveys = [
+    surveys = tuple(
         replace(each, call=openly, options=()) if each is last else each
         for each in d.answers.surveys
-    ]
-    d.answers.options = ()
+    )
+    d.answers = replace(d.answers, surveys=surveys)
+    d.answers = replace(d.answers, options=())
 
 
 def paired(d: Discourse, wanted: str) -> Condition | None:
@@ -217,24 +218,26 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
     agreed = just_agreed(d, no) or just_branched(d, no)
     if agreed is not None:
         return agreed
-    if d.rounds.round.stop is not None and in_round(
+    if d.round.stop is not None and in_round(
         d
     ):  # "check every lab for a cup. If there is none, ..."
-        if d.rounds.round.stop.thing is not None:
-            d.branch.met = Meeting(
-                d.rounds.round.stop.thing, holds=no == d.rounds.round.stop.denied
+        if d.round.stop.thing is not None:
+            d.branch = replace(
+                d.branch, met=Meeting(d.round.stop.thing, holds=no == d.round.stop.denied)
             )
-        return negated(d.rounds.round.stop.condition) if no else d.rounds.round.stop.condition
+        return negated(d.round.stop.condition) if no else d.round.stop.condition
     looked = just_looked_for(d, None)
     if looked is not None:
         person = d.scene.person if not d.scene.thing_last else None
         if person is not None or d.scene.thing is not None:
             found_now = person or d.scene.thing or Thing(Text(ANYONE))
-            d.branch.met = Meeting(found_now, holds=not no, sought=not in_round(d))
+            d.branch = replace(
+                d.branch, met=Meeting(found_now, holds=not no, sought=not in_round(d))
+            )
         return Not(looked) if no else looked
     delivery = delivered_last(d)
     if delivery is not None and no and (d.answers.last is None or there_is_none):
-        d.branch.met = Meeting(delivery.thing, holds=False, sought=True)
+        d.branch = replace(d.branch, met=Meeting(delivery.thing, holds=False, sought=True))
         return Not(Holds(Ask("find", {"thing": delivery.thing.value})))
     if d.answers.last is None:
         about = d.reports.last.thing if d.reports.last is not None else None
@@ -242,7 +245,7 @@ def said_so(d: Discourse, no: bool, there_is_none: bool = False) -> Condition:
         known = checked(d) if looked is None else None
         if looked is not None or known is not None:
             if about is not None:
-                d.branch.met = Meeting(about, holds=not no)
+                d.branch = replace(d.branch, met=Meeting(about, holds=not no))
             result = looked or Holds(known or Truth(True))
             return Not(result) if no else result
         raise NotUnderstood(d.language.phrase("no_question"))
@@ -286,7 +289,8 @@ def answers_many(d: Discourse, node: Node) -> Condition:
 def so_many_said(d: Discourse, node: Node, said: Said | None) -> Condition:
     """Whether as many as a condition says gave an answer."""
     surveys = polled_before(d)
-    answer = d.answers.said = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
+    answer = yes(d) if said is None else wanted_answer(d, surveys[-1], said)
+    d.answers = replace(d.answers, said=answer)
     how = node.production.fixed.get("how")
     not_all = bool(node.production.fixed.get("no"))
     if how == "some" and asked_without_end(d, surveys[-1]):

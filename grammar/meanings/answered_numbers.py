@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from grammar.chart import Node
 from grammar.discourse import Discourse
 from grammar.errors import NotUnderstood
@@ -49,4 +51,6 @@ def of_answers(d: Discourse, node: Node) -> None:
     """Of those who were asked, only a number is told: "ask who wants tea and tell me how many"."""
     yes_no = {d.language.phrase("yes"), d.language.phrase("no")}
     if node.production.fixed.get("many") and d.answers.last is not None and d.answers.surveys:
-        d.answers.polled_for = "many" if set(d.answers.surveys[-1].options) == yes_no else "each"
+        d.answers = replace(
+            d.answers, polled_for="many" if set(d.answers.surveys[-1].options) == yes_no else "each"
+        )

@@ -54,7 +54,9 @@ def answer(d: Discourse, node: Node) -> Steps:
             return [Call("goto", {"place": spot.place}), *steps]
         return [*steps]
     speaking = speak_to(d, person, [*steps])
-    d.answers.claimed_question = speaking[-1] if node.production.fixed.get("claimed") else None
+    d.answers = replace(
+        d.answers, claimed_question=speaking[-1] if node.production.fixed.get("claimed") else None
+    )
     return speaking
 
 
@@ -72,7 +74,6 @@ def answered_already(d: Discourse, node: Node, person: Thing | None) -> bool:
 
 @meaning("listen")
 def listen(d: Discourse, node: Node) -> Steps:
-    d.answers.heard = d.variable("heard")
-    d.answers.last = d.answers.heard
-    d.answers.options = ()
+    d.answers = replace(d.answers, heard=d.variable("heard"))
+    d.answers = replace(d.answers, last=d.answers.heard, options=())
     return [Call("listen", {}, save_as=d.answers.heard)]

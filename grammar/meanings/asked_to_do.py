@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.errors import NotUnderstood
@@ -22,7 +24,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     part = node.parts.get("text")
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
-    d.answers.message = node
+    d.answers = replace(d.answers, message=node)
     if part is not None and verb_never(d, part.start):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(part.start, part.end)))
     kinds = ("to_you_asked", "to_you_who", "to_you")
@@ -55,7 +57,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     steps = speak_to(d, person, [saying])
     note_reminder(d, node, person, "fact" if "phrase" in node.production.fixed else "deed")
     if "phrase" not in node.production.fixed and isinstance(words, Text):
-        d.answers.request = Request(saying, words.value, person)
+        d.answers = replace(d.answers, request=Request(saying, words.value, person))
     return steps
 
 
@@ -85,6 +87,6 @@ def manner_within(d: Discourse, node: Node, verb: Leaf | Node | None) -> str:
         words = tuple(d.language.tokens_of(way))
         for at in range(max(begun, default=node.start), last + 1):
             if tuple(d.norms(at, min(at + len(words), len(d.tokens)))) == words:
-                d.command.resolved.update(range(at, at + len(words)))
+                d.resolves(range(at, at + len(words)))
                 return d.words(at, at + len(words))
     return ""

@@ -63,7 +63,7 @@ def audience(d: Discourse, person: Thing | None) -> Audience:
     person = where_sent(d, person)
     if person.group is not None or person.count is not None:
         way = go(d, person.place) if person.place is not None else []
-        d.scene.person = replace(person, here=True)
+        d.scene = replace(d.scene, person=replace(person, here=True))
         return Audience(person, way, several=True)
     if person.plural and (person.text == ANYONE or person.every):  # "ask each of them"
         way = go(d, person.place) if person.place is not None else []
@@ -75,9 +75,9 @@ def audience(d: Discourse, person: Thing | None) -> Audience:
     if person.known or person.first or person.place is not None or sought:
         way = meet(d, person)
         if sought and not way and d.scene.with_person != person.value:  # "ask the nurse"
-            d.scene.with_person = person.value
+            d.scene = replace(d.scene, with_person=person.value)
             way = [found(d, person)]
-    d.scene.person = person if not person.first else d.scene.person
+    d.scene = replace(d.scene, person=person if not person.first else d.scene.person)
     return Audience(person, way)
 
 
@@ -111,7 +111,7 @@ def put(
         known = d.scene.with_person  # whoever was spoken to before
     who_else = (
         d.scene.place
-        if d.rounds.in_loop and isinstance(d.scene.place, Recall) and d.scene.place == d.scene.at
+        if d.loops.in_loop and isinstance(d.scene.place, Recall) and d.scene.place == d.scene.at
         else None
     )
     asking = asked(d, call, options, known or who_else, nouns)
@@ -139,7 +139,7 @@ def _to_each(
     asking = asked(d, _to(call, who), options, who, nouns)
     if group is None or isinstance(group, Ask):
         return [ForEach(who.name, group or Ask("people"), (asking,))]
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     return [ForEach(who.name, group, tuple(if_found(d, who, [asking])))]
 
 
@@ -155,9 +155,10 @@ def asked(
     nouns: frozenset[str] = frozenset(),
 ) -> Call:
     """Remember a question, so that its answers can be reported."""
-    round_at = d.scene.place if d.rounds.in_loop and isinstance(d.scene.place, Recall) else None
-    d.answers.request = None
-    d.answers.surveys.append(Survey(call, options, who, round_at, nouns))
+    round_at = d.scene.place if d.loops.in_loop and isinstance(d.scene.place, Recall) else None
+    d.answers = replace(d.answers, request=None)
+    survey = Survey(call, options, who, round_at, nouns)
+    d.answers = replace(d.answers, surveys=(*d.answers.surveys, survey))
     return call
 
 
@@ -166,12 +167,10 @@ def remember_answer(d: Discourse, options: tuple[str, ...], name: str) -> str:
     places = {each for place in d.lexicon.places for each in (place.name, d.called(place.name))}
     if options and all(option in places for option in options):
         variable = answer_variable(d, options) or d.variable("place")
-        d.scene.place = Recall(variable)
+        d.scene = replace(d.scene, place=Recall(variable))
     else:
         variable = answer_variable(d, options) or d.variable(name)
-    d.answers.last = variable
-    d.answers.options = options
-    d.reports.last = d.reports.news = d.reports.checked = d.answers.polled_for = d.answers.said = (
-        None
-    )
+    d.answers = replace(d.answers, last=variable, options=options)
+    d.reports = replace(d.reports, last=None, news=None, checked=None)
+    d.answers = replace(d.answers, polled_for=None, said=None)
     return variable

@@ -50,7 +50,7 @@ def answers_reached(d: Discourse, node: Node) -> Condition:
     """ "until three of them say yes": the loop around counts the answers."""
     if not d.answers.surveys:
         raise NotUnderstood(d.language.phrase("no_question"))
-    if not d.rounds.in_loop and asked_so_far(
+    if not d.loops.in_loop and asked_so_far(
         d
     ):  # "if one of them says no": all have answered by now
         return reached(d, node)
@@ -61,7 +61,9 @@ def counting_to(d: Discourse, node: Node) -> Compare:
     """Whether so many have answered by now, as the loop around is to count."""
     answer = d.get(node, "answer")
     name = d.variable("answers" if answer is None else f"said_{answer}")
-    d.answers.counting = (d.answers.surveys[-1], None if answer is None else str(answer), name)
+    d.answers = replace(
+        d.answers, counting=(d.answers.surveys[-1], None if answer is None else str(answer), name)
+    )
     return Compare(Recall(name), ">=", Number(int(d.get(node, "count"))))
 
 
@@ -70,7 +72,7 @@ def reached(d: Discourse, node: Node) -> Condition:
     surveys = polled_before(d)
     said = d.get(node, "answer")
     wanted = None if said is None else Wanted((str(said),))
-    d.answers.said = wanted
+    d.answers = replace(d.answers, said=wanted)
     number = int(d.get(node, "count"))
     if wanted is not None and number == 1 and asked_without_end(d, surveys[-1]):
         return wanted.given(surveys[-1])
@@ -85,7 +87,7 @@ def until_answered(d: Discourse, condition: Condition, body: Steps) -> Steps:
     if d.answers.counting is None:
         return [RepeatUntil(condition, tuple(body))]
     survey, answer, name = d.answers.counting
-    d.answers.counting = None
+    d.answers = replace(d.answers, counting=None)
     count: Step = Increase(name)
     if answer is not None:
         count = If(survey.said(answer), (count,))
@@ -116,8 +118,8 @@ def the_last_one(d: Discourse) -> None:
     people until one agrees, then take them to Clara's office"."""
     person = d.scene.person or Thing(Text(ANYONE), person=True)
     one = replace(person, place=None, group=None, count=None, every=False, plural=False)
-    d.scene.person, d.scene.thing_last = replace(one, here=True, coming=False), False
-    d.scene.with_person = one.value
+    d.scene = d.scene.speaking_of_person(replace(one, here=True, coming=False))
+    d.scene = replace(d.scene, with_person=one.value)
 
 
 @meaning("stop_asking")
@@ -130,7 +132,7 @@ def stop_asking(d: Discourse, node: Node) -> Steps:
 def stops_asking(d: Discourse, node: Node) -> bool:
     """Whether something is said to be done as soon as so many have answered, while others are still
     to be asked."""
-    reached = _reached(node) is not None and bool(asked_so_far(d)) and not d.rounds.in_loop
+    reached = _reached(node) is not None and bool(asked_so_far(d)) and not d.loops.in_loop
     return reached and in_loop(d, d.answers.surveys[-1].call)
 
 
@@ -142,11 +144,8 @@ def as_soon_as_answered(d: Discourse, node: Node) -> Steps:
     if one and not endless and isinstance(survey.who, Recall) and survey.where is None:
         who = d.variable("who")
         note(d, survey.call, [Remember(who, survey.who)], [Remember(who, Text(""))])
-        d.scene.person, d.scene.thing_last = (
-            Thing(Recall(who), known=True, person=True, here=True),
-            False,
-        )
-        d.scene.with_person = Recall(who)
+        d.scene = d.scene.speaking_of_person(Thing(Recall(who), known=True, person=True, here=True))
+        d.scene = replace(d.scene, with_person=Recall(who))
     then: Steps = d.build(node.parts["then"])
     return then if endless else [If(condition, tuple(then))]
 
@@ -169,19 +168,21 @@ def stopped_when(d: Discourse, node: Node) -> tuple[Survey, Compare]:
     assert part is not None
     condition = counting_to(d, part)
     counting = survey, answer, name = d.answers.counting
-    d.answers.counting = None
+    d.answers = replace(d.answers, counting=None)
     if not in_loop(d, survey.call):
         raise NotUnderstood(d.language.phrase("no_question"))
     at = next((at for at, each in enumerate(d.done) if isinstance(each, Forever)), None)
     endless = d.done[at] if at is not None else None
     if isinstance(endless, Forever) and at is not None and is_in(endless, survey.call):
-        d.answers.counting = counting
+        d.answers = replace(d.answers, counting=counting)
         d.done[at : at + 1] = until_answered(d, condition, list(endless.steps))
         return survey, condition
     count: Step = Increase(name)
     if answer is not None:
         count = If(survey.said(answer), (count,))
-        d.answers.said, d.answers.polled_for = Wanted((answer,)), "who"  # "... and tell me"
+        d.answers = replace(
+            d.answers, said=Wanted((answer,)), polled_for="who"
+        )  # "... and tell me"
     leave = If(condition, (End(),))
     noted = noting(_left_when(d.done, survey.call, leave), survey.call, [count, leave])
     d.done[:] = [Remember(name, Number(0)), *noted]

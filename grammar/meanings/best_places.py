@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
@@ -40,9 +40,9 @@ class Best:
 def place_best(d: Discourse, node: Node) -> Best:
     """ "the ward with the most patients": found out by going round."""
     only_taken_apart(d, node)
-    before = d.scene.person, d.scene.thing, d.scene.thing_last
+    before = d.scene
     thing: Thing = d.get(node, "thing")
-    d.scene.person, d.scene.thing, d.scene.thing_last = before
+    d.scene = d.scene.speaking_as(before)
     of_round = node.production.fixed.get("one")
     places = None if of_round else kind_places(d, d.get(node, "kind"))
     return Best(places, thing, not node.production.fixed.get("fewest"))
@@ -63,10 +63,10 @@ def place_such(d: Discourse, node: Node) -> Such:
     """ "an empty office", "any lab that has a microscope": the first that is so."""
     only_taken_apart(d, node)
     place = d.variable("place")
-    before = d.scene.at, d.scene.person, d.scene.thing, d.scene.thing_last
-    d.scene.at = Recall(place)
+    before = d.scene
+    d.scene = replace(d.scene, at=Recall(place))
     trait: Trait = d.get(node, "place_trait")
-    d.scene.at, d.scene.person, d.scene.thing, d.scene.thing_last = before
+    d.scene = replace(d.scene.speaking_as(before), at=before.at)
     return Such(kind_places(d, d.get(node, "kind")), place, trait)
 
 
@@ -75,8 +75,7 @@ def first_such(d: Discourse, such: Such) -> tuple[Steps, Recall, Condition]:
     found = d.variable("found_place")
     noting = If(such.trait.condition, (Remember(found, Recall(such.variable)), End()))
     going = round_of(d, such.places, [*such.trait.first, noting], such.variable)
-    d.scene.at = d.scene.with_person = None
-    d.scene.looked_in = Recall(found)
+    d.scene = replace(d.scene.wandered(), looked_in=Recall(found))
     return [Remember(found, Text("")), going], Recall(found), Compare(Recall(found), "==", Text(""))
 
 
@@ -93,5 +92,5 @@ def survey(d: Discourse, best: Best) -> tuple[Steps, Recall]:
         Either((first, better)), (Remember(most, Recall(count)), Remember(kept, Recall(place)))
     )
     going = round_of(d, best.places, [counting, noting], place)
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     return [Remember(most, Number(0)), Remember(kept, Text("")), going], Recall(kept)

@@ -117,16 +117,17 @@ def if_(d: Discourse, node: Node) -> Steps:
         if delivery is None:
             kept_back = kept_in_hand(d) or []
             handed = [] if gives_it(node.parts["then"]) else kept_back
-    start = d.scene.copy()
+    start = d.scene
     known = d.answers.last
     then = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
-    after = d.scene.copy()
-    d.scene = start.copy()
+    after = d.scene
+    d.scene = start
     asked = d.answers.last is not None and d.answers.last != known
     denied = node.parts.get("otherwise_denied")
     openly = bool(d.answers.surveys) and not d.answers.surveys[-1].options
     if asked and denied is not None and openly and isinstance(condition, Compare):
-        asked, d.answers.last = False, known  # "ask her where; if she has not, ..."
+        asked = False
+        d.answers = replace(d.answers, last=known)  # "ask her where; if she has not, ..."
     none, found = node.parts.get("otherwise_none"), node.parts.get("otherwise_so")
     if asked and denied is None and denies(d, condition):
         # "if not, ask Bob, and if he doesn't have one either, ask Clara": it is Bob who denies it
@@ -136,16 +137,16 @@ def if_(d: Discourse, node: Node) -> Steps:
         # "if it is not in the lab, look in the store; if it is not there either, ...": both are so
         further = searched_on(d, then, part, after, no=part is none)
     if further is not None:
-        then, part, after = further, None, d.scene.copy()
+        then, part, after = further, None, d.scene
     else:
         part = other_branch(d, node, condition) or denied
     if asked and denied is not None:
         # "if Bob is there, ask him whether he has time. If he does not, ...": that is his answer.
-        scene = d.scene.copy()
-        d.scene = after.copy()
+        scene = d.scene
+        d.scene = after
         said_no = said_so(d, no=True)
         then = [*then, If(said_no, tuple(branch(d, denied, None, None)))]
-        d.scene = scene.copy()
+        d.scene = scene
     otherwise: Steps = []
     if part is not None and not (asked and part is denied):
         led_from_here(d, then, after)
@@ -157,7 +158,7 @@ def if_(d: Discourse, node: Node) -> Steps:
     if handed:
         then = then if hands_it_over(node.parts["then"]) else [*handed, *then]
         otherwise = otherwise if hands_it_over(part) else [*handed, *otherwise]
-        d.scene.holding = None
+        d.scene = replace(d.scene, holding=None)
         # Who is not found is in no state, either.
         looked = searched(d.done[-1]) if d.done and not before_it else None
         if looked is not None and delivery is not None and delivery.person is not None:
@@ -175,7 +176,7 @@ def if_(d: Discourse, node: Node) -> Steps:
         whole, told = told_in_any_case(d, whole)
         if told:
             return [*before_it, *counted, whole, *told]
-    d.branch.before = Branched(whole, start, met, d.answers.last, assumed)
+    d.branch = replace(d.branch, before=Branched(whole, start, met, d.answers.last, assumed))
     return [*before_it, *counted, whole]
 
 
@@ -187,7 +188,7 @@ def led_from_here(d: Discourse, then: Steps, after: Scene) -> None:
     after_it = then[back[-1] :] if back else []
     guided = any(isinstance(each, Call) and each.method == "guide" for each in after_it)
     if guided and isinstance(led, Thing) and d.scene.person != led:
-        d.scene.person, d.scene.thing_last = replace(led, here=False, place=Recall(START)), False
+        d.scene = d.scene.speaking_of_person(replace(led, here=False, place=Recall(START)))
 
 
 def is_other_case(d: Discourse, condition: Condition, met: Meeting | None) -> bool:
@@ -209,7 +210,7 @@ def as_said_now(d: Discourse, node: Node, condition: Condition, met: Meeting | N
     assumed to be done then."""
     before = d.branch.before
     assert before is not None
-    d.scene = before.scene.copy()
+    d.scene = before.scene
     otherwise = branch(d, node.parts["then"], met, claim_of(d, node, condition, met))
     first = d.done.pop()
     assert isinstance(first, If)
@@ -243,10 +244,10 @@ def if_found_so(d: Discourse, node: Node, search: Search) -> Steps:
     d.done.pop()
     thing = thing_sought(d, search.found)
     met = Meeting(replace(thing, pronoun=False, place=None), holds=True, sought=True)
-    start = d.scene.copy()
+    start = d.scene
     then = branch(d, node.parts["then"], met, found_claim(d, search.found, met))
-    after = d.scene.copy()
-    d.scene = start.copy()
+    after = d.scene
+    d.scene = start
     claim = found_claim(d, search.found, turned(met))
     otherwise = branch(d, node.parts["otherwise"], turned(met), claim)
     leave_off(d, after)
@@ -274,12 +275,12 @@ def found_out_either_way(d: Discourse, node: Node, before_it: Steps, condition: 
     if isinstance(condition, Holds) and isinstance(condition.value, Ask):
         noted = [Remember(name, condition.value)]
     words: Steps = [If(Holds(Recall(name)), (yes,), (no,))]
-    d.reports.last, d.reports.checked = None, name
+    d.reports = replace(d.reports, last=None, checked=name)
     d.done += [*before_it, *noted]
-    d.reports.news = News(words, True, waiting=True)
+    d.reports = replace(d.reports, news=News(words, True, waiting=True))
     told: Steps = d.build(node.parts["then"])
     if d.reports.news.waiting:  # "..., then come back": to say it
-        d.reports.news, d.reports.told = News(words, True), words[-1]
+        d.reports = replace(d.reports, news=News(words, True), told=words[-1])
         return [*told, *words]
     return told
 
@@ -292,10 +293,10 @@ def other_hands_it_over(node: Node) -> bool:
 
 def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     """A delivery, and what is done if that is not possible: "if there is no coffee, bring tea"."""
-    after = d.scene.copy()
-    outer, d.deliveries.meant_for = (
-        d.deliveries.meant_for,
-        d.deliveries.meant_for if met.thing.person else taken.delivery,
+    after = d.scene
+    outer = d.deliveries.meant_for
+    d.deliveries = replace(
+        d.deliveries, meant_for=d.deliveries.meant_for if met.thing.person else taken.delivery
     )
     place = met.thing.place or taken.delivery.thing.place or taken.delivery.before.at
     lost = met if met.thing.person else replace(met, thing=replace(met.thing, place=place))
@@ -305,7 +306,7 @@ def failing(d: Discourse, node: Node, taken: Taken, met: Meeting) -> Steps:
     else:
         meet_there(d, lost)
         otherwise = told_so(d, node, claim)
-    d.deliveries.meant_for = outer
+    d.deliveries = replace(d.deliveries, meant_for=outer)
     leave_off(d, after)
     names = ("otherwise", "otherwise_not", "otherwise_none")
     part = next((node.parts[name] for name in names if name in node.parts), None)
@@ -353,25 +354,24 @@ def as_before(d: Discourse, condition: Condition) -> None:
     if before is None or last is not before.step or not isinstance(last, If):
         return
     if excludes(last, If(condition, ())):
-        d.scene = before.scene.copy()
+        d.scene = before.scene
 
 
 def absent(
     d: Discourse, node: Node, kept: Addressed, met: Meeting, make: Callable[[], Steps]
 ) -> Steps:
     """What was done with somebody, if they are there, and what is done if not."""
-    after, options, known = d.scene.copy(), d.answers.options, d.answers.last
+    after, options, known = d.scene, d.answers.options, d.answers.last
     asked = any(isinstance(each, Call) and each.save_as == known for each in kept.steps)
-    outer = d.answers.undelivered, d.answers.instead_of
-    d.answers.undelivered = (
-        None if d.answers.message is None else (d.answers.message, d.known_by_now())
+    outer = d.answers
+    d.answers = replace(
+        d.answers,
+        undelivered=None if d.answers.message is None else (d.answers.message, d.known_by_now()),
+        instead_of=known if asked else None,
     )
-    d.answers.instead_of = known if asked else None
     claim = claim_of(d, node, Holds(Truth(False)), met)
-    d.branch.claim, before = (
-        None if claim is None else Claim(claim, d.known_by_now()),
-        d.branch.claim,
-    )
+    before = d.branch.claim
+    d.branch = replace(d.branch, claim=None if claim is None else Claim(claim, d.known_by_now()))
     meet_there(d, met)
     otherwise = tried_there(d, d.sequence(lambda: d.done.extend(make())), met.thing, kept)
     part = other_branch(d, node, Not(kept.condition)) or node.parts.get("otherwise_denied")
@@ -380,16 +380,18 @@ def absent(
     if neither is not None and part is neither and isinstance(last, If) and only_told_missing(last):
         in_vain = d.sequence(lambda: d.done.extend(d.build(neither)))
         otherwise[-1], part = structs_replace(last, otherwise=tuple(in_vain)), None
-    d.branch.claim, (d.answers.undelivered, d.answers.instead_of) = before, outer
-    elsewhere = d.scene.copy()
-    d.scene = after.copy()
+    d.answers = replace(d.answers, undelivered=outer.undelivered, instead_of=outer.instead_of)
+    d.branch = replace(d.branch, claim=before)
+    elsewhere = d.scene
+    d.scene = after
     then = list(kept.steps)
     if part is not None:
-        answer, d.answers.last, d.answers.options = d.answers.last, known, options
+        answer = d.answers.last
+        d.answers = replace(d.answers, last=known, options=options)
         then = d.sequence(lambda: _go_on(d, then, part))
-        d.answers.last = d.answers.last or answer
-        after = d.scene.copy()
-    d.scene = elsewhere.copy()
+        d.answers = replace(d.answers, last=d.answers.last or answer)
+        after = d.scene
+    d.scene = elsewhere
     leave_off(d, after)
     otherwise, told = told_by_either(otherwise, Recall(known) if asked and known else None)
     return [kept.or_else(then, otherwise), *told]
@@ -432,12 +434,12 @@ def searched_on(
     if not steps or searched(steps[-1]) is None:
         return None
     outer, d.done = d.done, list(steps)
-    before = d.scene.copy()
-    d.scene = scene.copy()
+    before = d.scene
+    d.scene = scene
     condition = said_so(d, no=no, there_is_none=no)
     inner = branch(d, part, d.branch.met, None)
     found, d.done = d.done, outer
-    d.scene = before.copy()
+    d.scene = before
     return [*found, If(condition, tuple(inner))]
 
 
@@ -483,8 +485,8 @@ def _with_more(d: Discourse, step: If, clause: Node) -> If | None:
         return None if inner is None else structs_replace(step, **{name: (*body[:-1], inner)})
     outer, d.done = d.done, body
     looked = searches(search)
-    d.scene.place = looked[-1].arguments.get("place", d.scene.place)
-    d.scene.at = d.scene.place if len(looked) == 1 else None
+    d.scene = replace(d.scene, place=looked[-1].arguments.get("place", d.scene.place))
+    d.scene = replace(d.scene, at=d.scene.place if len(looked) == 1 else None)
     more = d.build(clause)
     done, d.done = [*d.done, *more], outer
     return structs_replace(step, **{name: tuple(done)})
@@ -507,9 +509,9 @@ def branch(d: Discourse, part: Leaf | Node, met: Meeting | None, claim: Step | N
     """The steps of one branch; `claim` says what is so in it."""
     meet_there(d, met)
     outer = d.branch.claim
-    d.branch.claim = None if claim is None else Claim(claim, d.known_by_now())
+    d.branch = replace(d.branch, claim=None if claim is None else Claim(claim, d.known_by_now()))
     steps: Steps = d.build(part)
-    d.branch.claim = outer
+    d.branch = replace(d.branch, claim=outer)
     return steps
 
 

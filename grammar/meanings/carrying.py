@@ -45,9 +45,7 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     sought_somebody = d.scene.at == d.scene.looked_in and (
         d.scene.with_person is not None or not d.scene.thing_last
     )
-    for_somebody = (
-        d.rounds.at_people or sought_somebody
-    )  # "if Bob is in the lobby, bring him a cup"
+    for_somebody = d.loops.at_people or sought_somebody  # "if Bob is in the lobby, bring him a cup"
     lacking = (
         d.scene.missing is not None and d.scene.missing.value == thing.value
     )  # "if there is none, ..."
@@ -57,8 +55,8 @@ def pick_up(d: Discourse, thing: Thing) -> Steps:
     nearby = nearby and not (only_delivered(d) and thing.value not in d.scene.now_at)
     is_here = thing.here or nearby or (d.scene.at is not None and thing.place == d.scene.at)
     steps: Steps = [] if looked or is_here else look_for(d, thing)
-    d.scene.holding = thing.value
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = replace(d.scene, holding=thing.value)
+    d.scene = d.scene.speaking_of(thing)
     return [*steps, Call("grab", {"thing": sought(d, thing)})]
 
 
@@ -97,9 +95,9 @@ def handed_over(d: Discourse, thing: Thing) -> bool:
     if d.answers.asked_for is None or thing.value != d.answers.asked_for or survey is None:
         return False
     note(d, survey.call, [Call("grab", {"thing": thing.value})], [])
-    d.answers.asked_for = None
-    d.scene.holding = thing.value
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.answers = replace(d.answers, asked_for=None)
+    d.scene = replace(d.scene, holding=thing.value)
+    d.scene = d.scene.speaking_of(thing)
     return True
 
 
@@ -109,7 +107,8 @@ def take_back_delivery(d: Discourse, thing: Thing) -> None:
     if brought and d.done[-len(brought) :] == brought and _is_given(brought[-1], thing):
         # "if she needs the cup, get it from the kitchen and bring it to Bob": to him only
         del d.done[-len(brought) :]
-        d.deliveries.brought, d.scene.holding, d.scene.at = (), thing.value, thing.place
+        d.deliveries = replace(d.deliveries, brought=())
+        d.scene = replace(d.scene, holding=thing.value, at=thing.place)
         return
     if d.scene.delivered != thing.value:
         return
@@ -120,10 +119,9 @@ def take_back_delivery(d: Discourse, thing: Thing) -> None:
             continue
         last = steps is d.done and at == len(steps) - 1
         del steps[at - 1 : at + 1]
-        d.scene.delivered = None
-        d.scene.holding = thing.value
+        d.scene = replace(d.scene, delivered=None, holding=thing.value)
         if last:  # but "get the box, then go to Henry and give it to him": he is where it is now
-            d.scene.at = d.scene.at_pick_up
+            d.scene = replace(d.scene, at=d.scene.at_pick_up)
         return
 
 
@@ -164,7 +162,7 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
     if need is not None:
         thing = replace(need.thing if thing.pronoun else thing, place=thing.place, pronoun=False)
         person, spot = for_them(need, spot) if person is None else (person, spot)
-    scene = d.scene.copy()
+    scene = d.scene
     if from_whoever_has_it(d, thing, lambda: _delivered(d, thing, person, spot)):
         return []
     thing = where_told(d, thing)
@@ -172,7 +170,7 @@ def deliver(d: Discourse, thing: Thing, person: Thing | None, spot: Where | None
     if told is not None:
         return [carried_from_there(d, told, thing, lambda: _delivered(d, thing, person, spot))]
     steps = _delivered(d, thing, person, spot)
-    d.deliveries.last = Delivery(thing, person, spot, tuple(steps), scene)
+    d.deliveries = replace(d.deliveries, last=Delivery(thing, person, spot, tuple(steps), scene))
     return steps
 
 
@@ -213,7 +211,7 @@ def _way_back(told: If) -> int | None:
 def carried_from_there(d: Discourse, told: If, thing: Thing, make: Callable[[], Steps]) -> If:
     """ "tell me where the stapler is and bring it to me": it is taken where it is found."""
     d.done.pop()
-    d.scene.holding = thing.value
+    d.scene = replace(d.scene, holding=thing.value)
     d.went(d.start())
     at = _way_back(told)
     taking = Call("grab", {"thing": thing.value})
@@ -228,30 +226,32 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
         fetch_before_waiting(d, thing, person)
     named = thing.place is None and not thing.pronoun
     if spot is not None and spot.place is not None and spot.place == d.scene.at and named:
-        d.scene.at = None  # "go to the lab and bring the microscope there": it is elsewhere
+        d.scene = replace(
+            d.scene, at=None
+        )  # "go to the lab and bring the microscope there": it is elsewhere
     no_way = spot is not None and spot.place is None and thing.place is None
     if no_way and d.scene.holding != thing.value and not thing.pronoun:
         steps: Steps = [Call("grab", {"thing": sought(d, thing)})]  # both are here
     else:
         steps = pick_up(d, thing)
-    d.scene.holding = None
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = replace(d.scene, holding=None)
+    d.scene = d.scene.speaking_of(thing)
     give: dict[str, Value] = {"thing": thing.value}
     if spot is not None:
         if spot.place is not None:
             steps += go(d, spot.place)
         if spot.furniture:
             give["where"] = Text(spot.furniture)
-        if d.scene.at is not None and not d.rounds.in_loop:
-            d.scene.now_at = {**d.scene.now_at, thing.value: d.scene.at}
+        if d.scene.at is not None and not d.loops.in_loop:
+            d.scene = replace(d.scene, now_at={**d.scene.now_at, thing.value: d.scene.at})
         return [*steps, Call("put", give)]
     if person is None or is_me(person):
         start = d.start()
         if steps or d.scene.at != start:
             steps.append(Call("goto", {"place": start}))
-        d.scene.at_pick_up = d.scene.at
+        d.scene = replace(d.scene, at_pick_up=d.scene.at)
         d.went(start)
-        d.scene.delivered = thing.value
+        d.scene = replace(d.scene, delivered=thing.value)
         return [*steps, Call("give", give)]
     left = any(isinstance(step, Call) and step.method in ("find", "goto") for step in steps)
     if left and person.here and not person.known:  # back to where they are
@@ -261,7 +261,7 @@ def _delivered(d: Discourse, thing: Thing, person: Thing | None, spot: Where | N
     elif left or not person.here:
         person = where_sent(d, person) if not steps else person
         steps += meet(d, replace(person, here=False)) or look_for(d, person)
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = d.scene.speaking_of(thing)
     if person.text != ANYONE:
         give["person"] = person.value
     return [*steps, Call("give", give)]
@@ -287,12 +287,12 @@ def fetch_before_waiting(d: Discourse, thing: Thing, person: Thing) -> None:
     ):
         return
     del d.done[at:]
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     d.done.extend(pick_up(d, thing))
     if not any(isinstance(each, Call) and each.method == "goto" for each in waiting):
         d.done.append(Call("goto", {"place": d.start() if here is None else here}))
     d.done.extend(waiting)
-    d.scene.at, d.scene.with_person = here, person.value
+    d.scene = replace(d.scene, at=here, with_person=person.value)
 
 
 def is_waiting(step: Step) -> bool:
@@ -312,6 +312,6 @@ def can_get(d: Discourse, node: Node) -> Steps:
     before = d.deliveries.last
     there = replace(thing, place=spot.place, furniture=spot.furniture, pronoun=False)
     told_where(d, there)
-    d.scene.thing, d.scene.thing_last = there, True
+    d.scene = d.scene.speaking_of(there)
     fetched = before is not None and is_called(d, there, before.thing.value)
     return [] if fetched or not thing.pronoun else deliver(d, there, *meant_for(d, there))

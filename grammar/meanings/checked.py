@@ -21,15 +21,17 @@ def whether_told(d: Discourse, node: Node) -> Told:
     condition, found out there and told elsewhere."""
     part = node.parts["condition"]
     condition = d.get(node, "condition")
-    before, d.command.pending = d.command.pending, []
-    d.reports.checked = d.variable("so")
-    no, yes = Remember(d.reports.checked, Truth(False)), Remember(d.reports.checked, Truth(True))
+    before = d.command.pending
+    d.command = replace(d.command, pending=())
+    so = d.variable("so")
+    d.reports = replace(d.reports, checked=so)
+    no, yes = Remember(so, Truth(False)), Remember(so, Truth(True))
     clause = direct_clause(d, part.start, part.end)
     told_yes, told_no = d.say("so_it_is", clause=clause), d.say("not_so", clause=clause)
     if node.production.fixed.get("asked"):  # "is meeting room 2 free?"
         told_yes, told_no = d.say("so_yes"), d.say("so_no")
-    told = If(Holds(Recall(d.reports.checked)), (told_yes,), (told_no,))
-    d.reports.last = None
+    told = If(Holds(Recall(so)), (told_yes,), (told_no,))
+    d.reports = replace(d.reports, last=None)
     return Told([told], [*before, no, If(condition, (yes,))])
 
 
@@ -67,5 +69,5 @@ def checked(d: Discourse) -> Value | None:
     else:
         d.done.pop(at)
         not_back_yet(d)
-    d.reports.last = replace(found, value=Recall(name))
+    d.reports = replace(d.reports, last=replace(found, value=Recall(name)))
     return Recall(name)

@@ -46,12 +46,12 @@ def by_choice(
     one: Callable[[Any], Steps],
 ) -> Steps:
     """The steps for the alternative that was chosen."""
-    before = d.scene.copy()
+    before = d.scene
     bodies: list[Steps] = []
     for each in alternatives:
-        d.scene = before.copy()
+        d.scene = before
         bodies.append(guard_finds(d, d.sequence(lambda each=each: d.done.extend(one(each)))))  # type: ignore[misc]
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     otherwise: Steps = []
     for condition, body in reversed(list(zip(chosen, bodies, strict=True))):
         otherwise = [If(condition, tuple(body), tuple(otherwise))]

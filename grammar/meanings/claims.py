@@ -44,16 +44,13 @@ COUNT: Final = "count"
 def claim_of(d: Discourse, node: Node, condition: Condition, met: Meeting | None) -> Step | None:
     """What a condition says, as a sentence of its own: "if there is a cup, tell me"."""
     part = node.parts["condition"]
-    if (
-        what_it_means(part) in ("some_places", "present_so_many")
-        and d.rounds.round.claims is not None
-    ):
-        claims = d.rounds.round.claims
+    if what_it_means(part) in ("some_places", "present_so_many") and d.round.claims is not None:
+        claims = d.round.claims
         said: Step = claims.yes if condition == claims.condition else claims.no
         return said
     if what_it_means(part) in ("so", "answered"):
         # Of a round it would be told at each place, and never that it is nowhere.
-        return found_claim(d, condition, met) if met is not None and not d.rounds.in_loop else None
+        return found_claim(d, condition, met) if met is not None and not d.loops.in_loop else None
     if what_it_means(part) == "answers_many":  # "if anyone says yes, tell Alice": how many did
         return polled(d, "many", None).words[0]
     if (
@@ -97,8 +94,8 @@ def found_claim(d: Discourse, condition: Condition, met: Meeting | None) -> Step
         return d.say("nobody_seen")
     if met is not None:
         return not_found(d, met.thing)
-    if d.rounds.round.claims is not None and d.rounds.round.claims.condition == condition:
-        missing: Step = d.rounds.round.claims.no
+    if d.round.claims is not None and d.round.claims.condition == condition:
+        missing: Step = d.round.claims.no
         return missing
     if isinstance(condition, Compare) and isinstance(condition.left, Ask):
         thing = condition.left.arguments.get("thing")
@@ -128,38 +125,40 @@ def meet_there(d: Discourse, met: Meeting | None) -> None:
     if met is None:
         return
     thing = replace(met.thing, here=met.holds, pronoun=False, first=False)
-    d.scene.missing = None if met.holds else replace(met.thing, place=met.thing.place or d.scene.at)
-    d.scene.lacking = None if met.holds or met.sought else d.scene.missing
+    d.scene = replace(
+        d.scene,
+        missing=None if met.holds else replace(met.thing, place=met.thing.place or d.scene.at),
+    )
+    d.scene = replace(d.scene, lacking=None if met.holds or met.sought else d.scene.missing)
     if isinstance(thing.place, Items):  # wherever it was found
-        d.scene.at = d.scene.with_person = None
-        d.scene.away = True
+        d.scene = replace(d.scene.wandered(), away=True)
     elif thing.place is not None:  # it was looked for there
         d.went(thing.place)
-        d.scene.looked_in = thing.place
+        d.scene = replace(d.scene, looked_in=thing.place)
     if not met.holds:
         thing = replace(thing, place=None, furniture=None)
     if thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
-        d.scene.with_person = thing.value if met.holds else None
+        d.scene = d.scene.speaking_of_person(thing)
+        d.scene = replace(d.scene, with_person=thing.value if met.holds else None)
         if met.holds and not thing.known:
-            d.people.visitor = thing
+            d.people = replace(d.people, visitor=thing)
     else:
         if met.holds and thing.plural:  # "if there are cups, bring them here"
             thing = replace(thing, every=True)
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
 
 
 def leave_off(d: Discourse, after: Scene) -> None:
     """The scene behind both branches: where the robot is only if it is there either way, and who
     was spoken of in the first."""
     at, with_person = d.scene.at, d.scene.with_person
-    d.scene = after.copy()
+    d.scene = after
     if d.scene.at != at:
-        d.scene.at = None
+        d.scene = replace(d.scene, at=None)
     if d.scene.with_person != with_person:
-        d.scene.with_person = None
+        d.scene = replace(d.scene, with_person=None)
         if d.scene.person is not None and d.scene.person.known:
-            d.scene.person = replace(d.scene.person, here=False)
+            d.scene = replace(d.scene, person=replace(d.scene.person, here=False))
 
 
 TELL: Final = "tell_condition"
@@ -172,9 +171,11 @@ def told_so(d: Discourse, node: Node, claim: Step | None) -> Steps:
         return [*go(d, d.get(node, "at_place")), *(known_words(d) if claim is None else [claim])]
     if is_me(person):
         outer = d.branch.claim
-        d.branch.claim = None if claim is None else Claim(claim, d.known_by_now())
+        d.branch = replace(
+            d.branch, claim=None if claim is None else Claim(claim, d.known_by_now())
+        )
         told = coming_back(d, node, tell_speaker(d))
-        d.branch.claim = outer
+        d.branch = replace(d.branch, claim=outer)
         return told
     words = known_words(d) if claim is None else [claim]
     # "Go to the lobby. If nobody is there, tell Bob": he need not be where the robot was sent.

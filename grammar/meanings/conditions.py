@@ -55,9 +55,10 @@ def and_(d: Discourse, node: Node) -> Condition:
         # What is so in one place is noted before the robot goes to look at the other.
         name = d.variable("so")
         noted: Steps = [Remember(name, Truth(False)), If(left, (Remember(name, Truth(True)),))]
-        d.command.pending[pending:pending] = noted
+        first, then = d.command.pending[:pending], d.command.pending[pending:]
+        d.command = replace(d.command, pending=(*first, *noted, *then))
         left = Holds(Recall(name))
-    d.branch.met = d.branch.met or met
+    d.branch = replace(d.branch, met=d.branch.met or met)
     return Both((left, right))
 
 
@@ -68,7 +69,7 @@ def _goes(step: Step) -> bool:
 @meaning("or")
 def or_(d: Discourse, node: Node) -> Condition:
     either = Either((d.get(node, "left"), d.get(node, "right")))
-    d.branch.met = None
+    d.branch = replace(d.branch, met=None)
     return either
 
 
@@ -76,7 +77,7 @@ def or_(d: Discourse, node: Node) -> Condition:
 def not_(d: Discourse, node: Node) -> Condition:
     condition = negated(d.get(node, "condition"))
     if d.branch.met is not None:
-        d.branch.met = replace(d.branch.met, holds=not d.branch.met.holds)
+        d.branch = replace(d.branch, met=replace(d.branch.met, holds=not d.branch.met.holds))
     return condition
 
 
@@ -95,11 +96,14 @@ def condition_of(d: Discourse, node: Node, name: str = "condition") -> tuple[Ste
     """The condition of a clause, and the steps that it needs before it can be checked; whom it is
     about is then `d.met`."""
     named_before(d, node, name)
-    outer, d.command.pending, d.branch.met = d.command.pending, [], None
-    d.rounds.round.told_of = only_told_of(node)
+    outer = d.command.pending
+    d.command = replace(d.command, pending=())
+    d.branch = replace(d.branch, met=None)
+    d.round = replace(d.round, told_of=only_told_of(node))
     condition: Condition = d.get(node, name)
-    before, d.command.pending = d.command.pending, outer
-    return before, condition
+    before = d.command.pending
+    d.command = replace(d.command, pending=outer)
+    return list(before), condition
 
 
 def only_told_of(node: Node) -> bool:
@@ -127,7 +131,7 @@ def battery_is(d: Discourse, node: Node) -> Condition:
     last = d.done[-1] if d.done else None
     if d.reports.open and last is not None and Ask("battery") in nodes(last):
         d.done.pop()  # "check your battery. If ...": nobody is told
-        d.reports.open = False
+        d.reports = replace(d.reports, open=False)
     return Compare(Ask("battery"), d.get(node, "operator", "=="), as_value(d.get(node, "percent")))
 
 
@@ -176,7 +180,7 @@ def is_touched(d: Discourse, node: Node) -> Condition:
     button = Text(d.language.phrase("button"))
     nobody = Remember(touched.name, Text(""))
     showing = Call("touch", {"options": Items((button,))}, save_as=touched.name)
-    d.command.pending.append(Try((showing,), (nobody,)))
+    d.first_of_all(Try((showing,), (nobody,)))
     return Compare(touched, "==", button)
 
 
@@ -196,12 +200,12 @@ def is_awaited(d: Discourse, node: Node) -> Condition:
     thing = noun_of(d, node)
     if thing.place is not None and thing.place != d.scene.at:
         d.went(thing.place)
-        d.command.pending.append(Call("goto", {"place": thing.place}))
-    d.scene.person = replace(thing, here=True)
+        d.first_of_all(Call("goto", {"place": thing.place}))
+    d.scene = replace(d.scene, person=replace(thing, here=True))
     seconds = as_value(d.get(node, "seconds"))
     waited = Holds(Ask("wait_for", {"thing": sought(d, thing), "timeout": seconds}))
     no = bool(node.production.fixed.get("no"))
-    d.branch.met = Meeting(thing, holds=not no)
+    d.branch = replace(d.branch, met=Meeting(thing, holds=not no))
     return Not(waited) if no else waited
 
 
@@ -211,7 +215,7 @@ def is_heard(d: Discourse, node: Node) -> Condition:
     if d.answers.heard is None:
         name = d.variable("heard")
         silence = Remember(name, Text(""))
-        d.command.pending.append(Try((Call("listen", save_as=name),), (silence,)))
+        d.first_of_all(Try((Call("listen", save_as=name),), (silence,)))
         heard: Value = Recall(name)
     else:
         heard = Recall(d.answers.heard)

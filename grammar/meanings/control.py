@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
@@ -53,7 +54,7 @@ def steps(d: Discourse, node: Node) -> Steps:
             each = done_first(for_all(d, each))
             before = len(d.done)
             d.begins.append(before)
-            scene = d.scene.copy()
+            scene = d.scene
             first = each.parts["first"]
             assert isinstance(first, Node)
             relative = d.tokens[first.start].norm in d.language.speech.get("relative", ())
@@ -182,11 +183,11 @@ def reversed_(d: Discourse, node: Node) -> Steps:
     if (
         later.start < earlier.start and d.scene.thing is None
     ):  # "put the cup here after you wash it"
-        before = d.scene.copy()
+        before = d.scene
         d.sequence(lambda: d.done.extend(d.build(later)))
         thing, thing_last = d.scene.thing, d.scene.thing_last
-        d.scene = before.copy()
-        d.scene.thing, d.scene.thing_last = thing, thing_last
+        d.scene = before
+        d.scene = replace(d.scene, thing=thing, thing_last=thing_last)
     at = len(d.done)
     if not done_already(d, node):
         d.done.extend(d.build(earlier))
@@ -240,13 +241,13 @@ def on_the_way(d: Discourse, node: Node) -> Steps:
         target = last.arguments.get("place")
     else:
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     stops: Steps = d.build(node.parts["steps"])
     if "more" in node.parts:  # "stop by Bob's office on the way to the lobby and say hello"
         stops = [*stops, *d.build(node.parts["more"])]
     if isinstance(going, Call) and going.method == "guide":
         stops = [_guided(each, going) for each in stops]
-    d.scene.at = d.scene.place = target
+    d.scene = d.scene.arrived(target)
     return [*stops, going]
 
 

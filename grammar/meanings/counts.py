@@ -33,7 +33,7 @@ def counted_both(d: Discourse, node: Node) -> Report:
         Remember(name, Ask("count", {"thing": sought(d, each)}))
         for name, each in zip(names, (one, two), strict=True)
     )
-    d.reports.last_counted = two
+    d.reports = replace(d.reports, last_counted=two)
     words = (("things", things), ("others", others), ("other", Recall(names[1])))
     return Report("counted_both", Recall(names[0]), where.place, words, name="counts", before=looks)
 

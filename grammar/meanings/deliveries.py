@@ -75,7 +75,7 @@ def ordered_now(d: Discourse, thing: Thing, person: Thing | None) -> Delivery | 
     if not need.steps or d.done[start:end] != list(need.steps):
         return None
     del d.done[start:end]
-    d.scene = need.before.copy()
+    d.scene = need.before
     for place in gone:
         d.went(place)
     return need
@@ -140,7 +140,7 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
     search = search_of(first)
     steps = d.done[at:]
     del d.done[at:]
-    d.scene = delivery.before.copy()
+    d.scene = delivery.before
     if search is not None:
         steps = steps[1:]
         there = met.thing.place
@@ -156,9 +156,10 @@ def taken_back(d: Discourse, delivery: Delivery, met: Meeting) -> Taken | None:
             arguments["place"] = place
         condition = Holds(Ask("find" if elsewhere else "sees", arguments))
     if missing.person:
-        d.scene.holding = delivery.thing.value
-        d.scene.thing, d.scene.thing_last = replace(delivery.thing, pronoun=True), True
-        d.scene.person = met.thing
+        d.scene = replace(d.scene, holding=delivery.thing.value)
+        d.scene = replace(
+            d.scene.speaking_of(replace(delivery.thing, pronoun=True)), person=met.thing
+        )
     return Taken(condition, steps, delivery)
 
 
@@ -231,10 +232,10 @@ def whereto_told(d: Discourse, thing: Thing) -> Thing:
     if not d.done or d.done[-1] is not delivery.steps[-1]:
         return thing
     del d.done[-len(delivery.steps) :]
-    d.scene = delivery.before.copy()
-    d.deliveries.destined = None
-    d.scene.person = delivery.person
-    d.scene.thing, d.scene.thing_last = delivery.thing, True
+    d.scene = delivery.before
+    d.deliveries = replace(d.deliveries, destined=None)
+    d.scene = replace(d.scene, person=delivery.person)
+    d.scene = d.scene.speaking_of(delivery.thing)
     return delivery.thing
 
 
@@ -285,9 +286,8 @@ def still_in_hand(d: Discourse, delivery: Delivery) -> Step | None:
     if not isinstance(last, Call) or not (whereto or delivery.receiver is not None):
         return None
     d.done.pop()
-    d.scene.delivered = None
-    d.scene.holding = delivery.thing.value
-    d.scene.thing, d.scene.thing_last = replace(delivery.thing, pronoun=True), True
+    d.scene = replace(d.scene, delivered=None, holding=delivery.thing.value)
+    d.scene = d.scene.speaking_of(replace(delivery.thing, pronoun=True))
     return last
 
 
@@ -311,9 +311,8 @@ def kept_in_hand(d: Discourse, *, asking: bool = True) -> Steps | None:
         first = at - 1  # nobody goes back with it in between
     handing = d.done[first : at + 1]
     del d.done[first : at + 1]
-    d.scene.delivered = None
-    d.scene.holding = delivery.thing.value
-    d.scene.thing, d.scene.thing_last = replace(delivery.thing, pronoun=True, place=None), True
+    d.scene = replace(d.scene, delivered=None, holding=delivery.thing.value)
+    d.scene = d.scene.speaking_of(replace(delivery.thing, pronoun=True, place=None))
     return handing
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Node, what_it_means
@@ -92,7 +93,7 @@ def between(d: Discourse, node: Node) -> str:
     """ "between the cup and the box"."""
     remembered, last = d.scene.thing, d.scene.thing_last
     first, second = d.get(node, "first"), d.get(node, "second")
-    d.scene.thing, d.scene.thing_last = remembered, last
+    d.scene = replace(d.scene, thing=remembered, thing_last=last)
     return d.language.phrase("between", first=first.text, second=second.text)
 
 
@@ -112,7 +113,7 @@ def relation(d: Discourse, node: Node) -> Where | str:
     """ "behind the cup": a descriptor; with its place if the other thing has one."""
     remembered, last = d.scene.thing, d.scene.thing_last
     other: Thing = d.get(node, "other")
-    d.scene.thing, d.scene.thing_last = remembered, last
+    d.scene = replace(d.scene, thing=remembered, thing_last=last)
     words = f"{node.production.fixed['relation']} {other.text}"
     if other.place is not None or other.furniture is not None:
         return Where(other.place, other.furniture, words)

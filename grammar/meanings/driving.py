@@ -59,8 +59,8 @@ def go_to(d: Discourse, node: Node) -> Steps:
     if with_them and d.scene.person is not None:
         return [lead(d, d.scene.person, place)]
     d.went(place)
-    d.scene.at_furniture = spot.furniture
-    d.people.on_duty = str(node.production.fixed.get("duty", ""))
+    d.scene = replace(d.scene, at_furniture=spot.furniture)
+    d.people = replace(d.people, on_duty=str(node.production.fixed.get("duty", "")))
     return [Call("goto", {"place": place})]
 
 
@@ -173,7 +173,7 @@ def are_a_row(d: Discourse, places: list[Value]) -> bool:
 @meaning("go_point")
 def go_point(d: Discourse, node: Node) -> Steps:
     arguments = {name: as_value(d.get(node, name)) for name in ("x", "y", "theta")}
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [
         Call("goto", {name: value for name, value in arguments.items() if node.parts.get(name)})
     ]
@@ -263,14 +263,16 @@ def done_there(d: Discourse, spot: Where, part: Leaf | Node) -> Steps:
         and d.command.at_place is None
         and d.scene.at is None
     ):
-        d.command.at_place, d.scene.at_furniture = spot.place, spot.furniture
+        d.command = replace(d.command, at_place=spot.place)
+        d.scene = replace(d.scene, at_furniture=spot.furniture)
         told: Steps = d.build(part)
-        d.command.at_place = d.scene.at_furniture = None
+        d.command = replace(d.command, at_place=None)
+        d.scene = replace(d.scene, at_furniture=None)
         return told
     going = go(d, spot.place) if spot.place is not None else []
-    d.scene.at_furniture = spot.furniture
+    d.scene = replace(d.scene, at_furniture=spot.furniture)
     inner: Steps = d.build(part)
-    d.scene.at_furniture = None
+    d.scene = replace(d.scene, at_furniture=None)
     if spot.furniture and not going and not speaks_of(inner, spot.furniture):
         raise NotUnderstood(d.language.phrase("where_is_thing", thing=spot.furniture))
     return [*going, *inner]
@@ -285,7 +287,7 @@ def speaks_of(steps: Steps, name: str) -> bool:
 def come_back(d: Discourse, node: Node) -> Steps:
     """Back to where the command was given; if the robot went somewhere in the one before, to where
     it was before that."""
-    if d.command.origin is not None and d.scene.at is None and not d.done and not d.rounds.in_loop:
+    if d.command.origin is not None and d.scene.at is None and not d.done and not d.loops.in_loop:
         d.went(Text(d.command.origin))
         return [Call("goto", {"place": Text(d.command.origin)})]
     if counted_alone(d):
@@ -325,7 +327,7 @@ def move(d: Discourse, node: Node) -> Steps:
     metres = float(d.get(node, "metres"))
     if node.production.fixed.get("back"):
         metres = -metres
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [Call("move", {"metres": as_value(metres)})]
 
 
@@ -341,7 +343,7 @@ def move_aside(d: Discourse, node: Node) -> Steps:
     """To one side, looking ahead as before: a robot on wheels has to turn for that."""
     metres = float(d.get(node, "metres"))
     degrees = -90.0 if d.get(node, "side") == "right" else 90.0
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [
         Call("turn", {"degrees": as_value(degrees)}),
         Call("move", {"metres": as_value(metres)}),
@@ -358,7 +360,7 @@ def drive(d: Discourse, node: Node) -> Steps:
     if d.get(node, "side", "left") == "right":
         angular = -angular
     seconds = as_value(d.get(node, "seconds"))
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [
         Call(
             "drive", {"linear": as_value(linear), "angular": as_value(angular), "seconds": seconds}
@@ -368,7 +370,7 @@ def drive(d: Discourse, node: Node) -> Steps:
 
 @meaning("dock")
 def dock(d: Discourse, node: Node) -> Steps:
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [Call("dock")]
 
 
@@ -395,14 +397,15 @@ def wait_for(d: Discourse, node: Node) -> Steps:
     if timeout is not None:
         arguments["timeout"] = as_value(timeout)
     if thing.person:
-        d.scene.person = come(d.scene.person or thing, thing)
-        d.scene.with_person = thing.value
-        d.people.visitor = d.people.visitor if thing.known else thing
+        d.scene = replace(
+            d.scene, person=come(d.scene.person or thing, thing), with_person=thing.value
+        )
+        d.people = replace(d.people, visitor=d.people.visitor if thing.known else thing)
     if thing.count is not None:
         if thing.person:  # they are all here then
-            d.scene.person = d.reports.last_counted = replace(
-                thing, count=None, place=None, here=True
-            )
+            here = replace(thing, count=None, place=None, here=True)
+            d.scene = replace(d.scene, person=here)
+            d.reports = replace(d.reports, last_counted=here)
         return [*steps, Repeat(Number(thing.count), (Call("wait_for", arguments),))]
     return [*steps, Call("wait_for", arguments)]
 
@@ -418,8 +421,9 @@ def whoever_came(d: Discourse, group: Items, seen: tuple[Condition, ...]) -> Ste
     """Which of several has come, as far as that is asked for: "wait for Alice or Bob and take them
     to the library"."""
     who = Recall(d.variable("who"))
-    d.scene.person = d.people.came = Thing(who, known=True, person=True, here=True)
-    d.scene.with_person, d.scene.group = who, None
+    came = Thing(who, known=True, person=True, here=True)
+    d.people = replace(d.people, came=came)
+    d.scene = replace(d.scene, person=came, with_person=who, group=None)
     *others, last = group.items
     noted = [
         If(here, (Remember(who.name, name),)) for here, name in zip(seen, others, strict=False)
@@ -438,5 +442,5 @@ def patrol(d: Discourse, node: Node) -> Steps:
     """ "drive back and forth between the lobby and the kitchen", "patrol the corridor": there and
     back."""
     places: list[Value] = [d.get(node, "place"), *(d.get(node, "place_list") or [d.start()])]
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [Call("goto", {"place": place}) for place in places]

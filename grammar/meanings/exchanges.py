@@ -20,12 +20,12 @@ from grammar.plan import Text
 def thing_owned(d: Discourse, node: Node) -> Thing:
     """ "Bob's folder": in his office, if nobody says where it is."""
     owner: Thing = d.get(node, "owner")
-    d.scene.person = owner  # "Bob's folder in his office"
+    d.scene = replace(d.scene, person=owner)  # "Bob's folder in his office"
     found = thing(d, node)
     if found.place is None and found.furniture is None and d.scene.at is None:
         found = replace(found, place=own_place(d, owner))
-    d.scene.person = owner
-    d.scene.thing, d.scene.thing_last = found, True
+    d.scene = replace(d.scene, person=owner)
+    d.scene = d.scene.speaking_of(found)
     return found
 
 

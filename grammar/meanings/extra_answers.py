@@ -49,8 +49,8 @@ def with_answer(d: Discourse, survey: Survey, besides: str) -> Survey:
         steps[:] = exchanged(steps, survey.call, [call])
         steps[:] = [_no_else(d, survey, each) for each in steps]
     anew = replace(survey, call=call, options=options)
-    d.answers.surveys = [anew if each is survey else each for each in d.answers.surveys]
-    d.answers.options = options
+    surveys = tuple(anew if each is survey else each for each in d.answers.surveys)
+    d.answers = replace(d.answers, surveys=surveys, options=options)
     return anew
 
 
@@ -76,7 +76,7 @@ def person_answered(d: Discourse, node: Node) -> Thing:
     who = set(d.language.speech.get("asks_somebody", ())) & set(words[:2])
     if survey is not None and survey.call.save_as is not None and who and not survey.options:
         named = Thing(Recall(survey.call.save_as), known=True, person=True)
-        d.scene.person, d.scene.thing_last = named, False
+        d.scene = d.scene.speaking_of_person(named)
         return named
     if d.scene.person is None or d.scene.person.plural or node.end - node.start > 2:
         raise NotUnderstood(d.language.phrase("no_question"))

@@ -38,7 +38,7 @@ ANYBODY: Final = (ANYONE, "visitor", "patient", "customer")
 
 def go(d: Discourse, place: Value) -> Steps:
     """Drive there, unless that is where the robot is by what was said."""
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     if d.scene.at == place:
         return []
     d.went(place)
@@ -131,15 +131,16 @@ def whether_found(d: Discourse, thing: Thing) -> Condition:
 def look_for(d: Discourse, thing: Thing) -> Steps:
     """Look for a thing or a person; if it may be in several places, until it is found."""
     several = isinstance(thing.place, Items)
-    d.scene.at = None if several else thing.place
-    d.scene.away = thing.place is None or several
+    d.scene = replace(
+        d.scene, at=None if several else thing.place, away=thing.place is None or several
+    )
     if thing.place is not None and not several:
-        d.scene.place = thing.place
-    d.scene.with_person = thing.value if thing.person else None
+        d.scene = replace(d.scene, place=thing.place)
+    d.scene = replace(d.scene, with_person=thing.value if thing.person else None)
     if thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
+        d.scene = d.scene.speaking_of_person(thing)
     else:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
     if several:
         looking = If(Not(whether_found(d, thing)), (not_found(d, thing),))
         return [] if d.done and d.done[-1] == looking else [looking]
@@ -151,11 +152,8 @@ def meet(d: Discourse, person: Thing) -> Steps:
     """Find a person, unless they are here by what was said."""
     if person.first:
         going = go(d, person.place) if person.place is not None else []
-        d.scene.with_person = person.value
-        d.scene.person, d.scene.thing_last = (
-            replace(person, first=False, place=None, here=True),
-            False,
-        )
+        d.scene = replace(d.scene, with_person=person.value)
+        d.scene = d.scene.speaking_of_person(replace(person, first=False, place=None, here=True))
         return [*going, Call("wait_for", {"thing": person.value})]
     if person.here or d.scene.with_person == person.value:
         return []
@@ -164,10 +162,9 @@ def meet(d: Discourse, person: Thing) -> Steps:
         return [] if left is None else go(d, left)
     if isinstance(person.place, Items):
         return look_for(d, person)
-    d.scene.with_person = person.value
-    d.scene.at = person.place
+    d.scene = replace(d.scene, with_person=person.value, at=person.place)
     if person.place is not None:
-        d.scene.place = person.place
+        d.scene = replace(d.scene, place=person.place)
     return [found(d, person)]
 
 
@@ -185,9 +182,7 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return each_of(d, person.group, steps)
     if person is None:  # "greet the visitor and say that lunch is ready"
         return (
-            steps
-            if d.scene.person is None or d.rounds.in_loop
-            else if_met(d, d.scene.person, steps)
+            steps if d.scene.person is None or d.loops.in_loop else if_met(d, d.scene.person, steps)
         )
     if person.first:
         return [*meet(d, person), *steps]
@@ -196,8 +191,11 @@ def speak_to(d: Discourse, person: Thing | None, steps: Steps) -> Steps:
         return if_met(d, person, steps)
     if not person.known and person.place is not None and (person.plural or person.text == ANYONE):
         return [*go(d, person.place), *steps]
-    d.scene.at = None if isinstance(person.place, Items) else person.place
-    d.scene.with_person = person.value
+    d.scene = replace(
+        d.scene,
+        at=None if isinstance(person.place, Items) else person.place,
+        with_person=person.value,
+    )
     return [If(whether_found(d, person), tuple(steps), (not_found(d, person),))]
 
 
@@ -227,7 +225,7 @@ def meet_several(d: Discourse, person: Thing) -> Steps:
 def each_of(d: Discourse, group: Value, steps: Steps) -> Steps:
     """Do something with each of several people, who are looked for one by one."""
     visits_only(d, group)
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     who = Recall(d.variable("person"))
     return [ForEach(who.name, group, tuple(if_found(d, who, steps)))]
 

@@ -149,11 +149,11 @@ def round_told(d: Discourse, node: Node) -> Told:
 @meaning("lookout_told")
 def lookout_told(d: Discourse, node: Node) -> Told:
     """ "whether there is one", "where you saw one": of what was looked for."""
-    lookout: Lookout | None = d.rounds.round.lookout
+    lookout: Lookout | None = d.round.lookout
     tell = str(node.production.fixed["tell"])
     if lookout is not None:
         return lookout.told(d, tell)
-    here = d.scene.at if in_round(d) else d.rounds.round.here
+    here = d.scene.at if in_round(d) else d.round.here
     if here is not None:  # "if one has none, tell me which one"
         return Told([d.say("such_places", places=as_value(here))], [])
     found_before_coming_back(d)
@@ -162,6 +162,6 @@ def lookout_told(d: Discourse, node: Node) -> Told:
         return looked.told(d, tell)
     if d.reports.news is not None:
         return found_told(d)
-    if d.rounds.round.such is None:
+    if d.round.such is None:
         return where_met(d, another_meant(d, node)) or told_of_search(d, tell)
-    return Told([d.say("it_is_there", place=Recall(d.rounds.round.such))], [])
+    return Told([d.say("it_is_there", place=Recall(d.round.such))], [])

@@ -4,7 +4,9 @@ that instead."""
 
 from __future__ import annotations
 
-from msgspec.structs import replace
+from dataclasses import replace
+
+from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps
@@ -21,25 +23,23 @@ from grammar.plan import Collect, Compare, ForEach, If, Recall, Step, Text
 def find_such(d: Discourse, node: Node) -> Steps:
     """ "find an empty office", "check the labs until you find one that is free"."""
     such = sought_place(d, node)
-    d.rounds.round.lookout = d.reports.last = d.reports.news = d.reports.counted = (
-        d.reports.checked
-    ) = None
+    d.round = replace(d.round, lookout=None)
+    d.reports = replace(d.reports, last=None, news=None, counted=None, checked=None)
     going, place, none = first_such(d, such)
-    d.rounds.round.such = place.name
-    d.scene.at = d.scene.place = place
+    d.round = replace(d.round, such=place.name)
+    d.scene = d.scene.arrived(place)
     missing = d.say("no_such_places")
     if not node.production.fixed.get("ask"):
         return [*going, If(none, (missing,))]
     words: Steps = [If(none, (missing,), (d.say("it_is_there", place=place),))]
-    d.reports.news = News(words, True)
-    d.reports.told = words[-1]
+    d.reports = replace(d.reports, news=News(words, True), told=words[-1])
     return [*going, *go_back(d, going), *words]
 
 
 def first_of_round(d: Discourse) -> bool:
     """Let a round that was to find out which places are so find the first of them: "check which
     room is free, then take the visitor there"; whether there was such a round."""
-    lookout: Lookout | None = d.rounds.round.lookout
+    lookout: Lookout | None = d.round.lookout
     at = lookout.at(d) if lookout is not None else None
     if lookout is not None and at is not None:
         such: Such | None = Such(lookout.places, lookout.place, lookout.trait)
@@ -51,9 +51,10 @@ def first_of_round(d: Discourse) -> bool:
         return False
     going, place, none = first_such(d, such)
     d.done[at:end] = [*going, If(none, (d.say("no_such_places"),))]
-    d.rounds.round.lookout = d.reports.news = d.reports.told = None
-    d.rounds.round.such = place.name
-    d.scene.at = d.scene.place = place
+    d.round = replace(d.round, lookout=None)
+    d.reports = replace(d.reports, news=None, told=None)
+    d.round = replace(d.round, such=place.name)
+    d.scene = d.scene.arrived(place)
     return True
 
 
@@ -77,17 +78,17 @@ def sought_place(d: Discourse, node: Node) -> Such:
     of yet."""
     part = node.parts.get("place")
     if part is not None:  # "there is a free meeting room"
-        d.rounds.taking_apart = True
+        d.loops = replace(d.loops, taking_apart=True)
         try:
             such: Such = d.build(part)
         finally:
-            d.rounds.taking_apart = False
+            d.loops = replace(d.loops, taking_apart=False)
         return such
     place = d.variable("place")
-    before = d.scene.at, d.scene.person, d.scene.thing, d.scene.thing_last
-    d.scene.at = Recall(place)
+    before = d.scene
+    d.scene = replace(d.scene, at=Recall(place))
     trait = d.get(node, "place_trait")
-    d.scene.at, d.scene.person, d.scene.thing, d.scene.thing_last = before
+    d.scene = replace(d.scene.speaking_as(before), at=before.at)
     return Such(kind_places(d, d.get(node, "kinds")), place, trait)
 
 
@@ -98,7 +99,10 @@ def if_such(d: Discourse, done: Steps) -> Steps:
         if rest and is_such(d, step):
             assert isinstance(step, If)
             back = [] if BACK in step.then else go_back(d, done[:at])
-            return [*done[:at], replace(step, then=(*back, *step.then), otherwise=tuple(rest))]
+            return [
+                *done[:at],
+                structs_replace(step, then=(*back, *step.then), otherwise=tuple(rest)),
+            ]
     return done
 
 

@@ -30,12 +30,14 @@ def ask_again(d: Discourse, node: Node) -> Steps:
         raise NotUnderstood(d.language.phrase("ask_what"))
     last: Survey = (in_line(d) or d.answers.surveys)[-1]
     if d.answers.wondered and last.call in d.answers.wondered and person.value == last.who:
-        wondered, d.answers.wondered = d.answers.wondered, ()  # asked only now
+        wondered = d.answers.wondered
+        d.answers = replace(d.answers, wondered=())  # asked only now
         d.done[:] = [each for each in d.done if not any(each is other for other in wondered)]
-        d.answers.surveys = d.answers.surveys[:-1]
-        d.variables.discard(str(last.call.save_as))
+        d.answers = replace(d.answers, surveys=d.answers.surveys[:-1])
+        d.variables -= {str(last.call.save_as)}
         if d.scene.at is None:
-            d.scene.with_person, person = None, replace(person, here=False)
+            person = replace(person, here=False)
+            d.scene = replace(d.scene, with_person=None)
     if not person.known and isinstance(last.who, Text):  # "ask them again"
         person = Thing(last.who, known=True, person=True)
     spot: Where | None = d.get(node, "from")
@@ -43,7 +45,7 @@ def ask_again(d: Discourse, node: Node) -> Steps:
         person = replace(person, place=spot.place, here=False)
     arguments = {key: value for key, value in last.call.arguments.items() if key != "person"}
     whom = audience(d, person)
-    d.scene.person = d.scene.person if whom.many else person
+    d.scene = replace(d.scene, person=d.scene.person if whom.many else person)
     name = remember_answer(d, last.options, "answer")
     return put(d, whom, Call("ask", arguments, save_as=name), last.options, last.nouns)
 
@@ -104,7 +106,8 @@ def ask_each_more(d: Discourse, node: Node) -> Steps:
     nouns = nouns_of(d, question, options)
     call = Call("ask", arguments, save_as=name)
     note(d, first.call, [call], [])
-    d.answers.surveys.append(Survey(call, options, first.who, first.where, nouns))
+    survey = Survey(call, options, first.who, first.where, nouns)
+    d.answers = replace(d.answers, surveys=(*d.answers.surveys, survey))
     return []
 
 

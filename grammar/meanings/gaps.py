@@ -24,7 +24,9 @@ def bring_too(d: Discourse, node: Node) -> Steps:
     if last is None and not whole(d, node):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     if last is not None and last.method == "put":
-        d.scene.at = None  # what goes elsewhere is not where the first one was put
+        d.scene = replace(
+            d.scene, at=None
+        )  # what goes elsewhere is not where the first one was put
     return bring(d, node)
 
 
@@ -42,7 +44,7 @@ def bring_as_many(d: Discourse, node: Node) -> Steps:
         others = replace(others, place=source_of(d, before))
     person: Thing | None = d.get(node, "person_ref")
     spot: Where | None = d.get(node, "where")
-    d.scene.at = d.scene.holding = None
+    d.scene = replace(d.scene, at=None, holding=None)
 
     def one(thing: Thing) -> Steps:
         return deliver(d, thing, person, spot)

@@ -4,9 +4,10 @@ something is so ("Go to every office. If somebody is there, ..."), and what is t
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import replace
 from typing import Final
 
-from msgspec.structs import replace
+from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
@@ -84,8 +85,8 @@ def in_round(d: Discourse, clause: Node) -> Steps:
     """The steps of a clause. "Go to every office. If somebody is there, ...": they belong to the
     round in the sentence before, which may consist of nothing but going there."""
     first = first_clause(clause)
-    if d.rounds.round.lookout is not None and (about_all(d, first) or fetches_it(d, first)):
-        d.rounds.round.lookout.until_found(d)
+    if d.round.lookout is not None and (about_all(d, first) or fetches_it(d, first)):
+        d.round.lookout.until_found(d)
     found_there_too(d, first)
     if alone(clause, first) and looks_out(d, first):
         return []
@@ -99,23 +100,26 @@ def in_round(d: Discourse, clause: Node) -> Steps:
         return told_behind(d, loop, told_only)
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
-    d.scene.at = d.scene.place = d.rounds.round.here = here
-    lookout = d.rounds.round.lookout if means not in (*ABOUT_IT, "if", "when") else None
-    d.rounds.round.stop, d.rounds.round.lookout = (
-        None if d.rounds.round.lookout is None else d.rounds.round.lookout.trait,
-        None,
+    d.round = replace(d.round, here=here)
+    d.scene = d.scene.arrived(here)
+    lookout = d.round.lookout if means not in (*ABOUT_IT, "if", "when") else None
+    d.round = replace(
+        d.round, stop=None if d.round.lookout is None else d.round.lookout.trait, lookout=None
     )
     if lookout is not None:
         lookout.meet(d)
-    in_loop, d.rounds.in_loop = d.rounds.in_loop, True
+    in_loop = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
     clause, behind = told_of_all(clause, first)
     try:
         more = in_company(d, first, d.build(clause))
         inner = [*d.done, *(more if lookout is None else lookout.acted_on(more))]
     finally:
-        d.done, d.rounds.in_loop = outer, in_loop
-    d.scene.at = d.scene.with_person = d.rounds.round.stop = d.rounds.round.here = None
-    loop = replace(loop, steps=tuple(inner))
+        d.done = outer
+        d.loops = replace(d.loops, in_loop=in_loop)
+    d.round = replace(d.round, stop=None, here=None)
+    d.scene = d.scene.wandered()
+    loop = structs_replace(loop, steps=tuple(inner))
     if behind is not None:
         d.done.append(loop)
         told: Steps = d.build(behind)
@@ -133,7 +137,7 @@ def found_there_too(d: Discourse, first: Node) -> None:
     loop = d.done[-2] if len(d.done) > 1 and d.done[-1] == BACK else None
     if isinstance(loop, ForEach) and goes_on(d, loop, first) and about_places(first):
         d.done.pop()
-        d.scene.at = None
+        d.scene = replace(d.scene, at=None)
 
 
 def about_places(first: Node) -> bool:
@@ -196,7 +200,7 @@ def in_company(d: Discourse, first: Node, steps: Steps) -> Steps:
 def fetches_it(d: Discourse, first: Node) -> bool:
     """ "if you find it, bring it here": whether a clause says what becomes of the one thing that is
     looked for, so that the search ends where it is."""
-    if not d.rounds.round.lookout.definite:
+    if not d.round.lookout.definite:
         return False
     return hands_it_over(first.parts.get("then", first))
 
@@ -212,20 +216,22 @@ def told_behind(d: Discourse, loop: ForEach, clause: Node) -> Steps:
     """ "go through all rooms and tell me if you see a dog": told when the round is done."""
     here = Recall(loop.variable)
     outer, d.done = d.done, list(loop.steps)
-    d.scene.at = d.scene.place = here
-    d.branch.met = None
-    lookout, d.rounds.round.lookout = d.rounds.round.lookout, None
-    d.rounds.round.stop = None if lookout is None else lookout.trait
-    in_loop, d.rounds.in_loop = d.rounds.in_loop, True
+    d.scene = d.scene.arrived(here)
+    d.branch = replace(d.branch, met=None)
+    lookout = d.round.lookout
+    d.round = replace(d.round, lookout=None, stop=None if lookout is None else lookout.trait)
+    in_loop = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
     before, condition = condition_of(d, clause)
-    d.rounds.in_loop, d.rounds.round.stop = in_loop, None
+    d.round = replace(d.round, stop=None)
+    d.loops = replace(d.loops, in_loop=in_loop)
     of_any = any(each.means == "trait_holds" for each in inside(clause.parts["condition"]))
     claim = None if of_any else claim_of(d, clause, condition, d.branch.met)
     inner, d.done = d.done, outer
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     person: Thing | None = d.get(clause, "person_ref")
-    loop, words = noted_of(d, replace(loop, steps=(*inner, *before)), condition, claim)
-    d.reports.last, d.reports.news, d.reports.told = None, News(words, person is None), words[-1]
+    loop, words = noted_of(d, structs_replace(loop, steps=(*inner, *before)), condition, claim)
+    d.reports = replace(d.reports, last=None, news=News(words, person is None), told=words[-1])
     if person is None or is_me(person):
         return [loop, *go_back(d, [loop]), *words]
     return [loop, *speak_to(d, person, words)]
@@ -289,7 +295,7 @@ def noted_of(
     if claim is None:
         none, some = d.say("no_none"), d.say("yes_these", places=Recall(found))
     words: Steps = [If(Compare(Length(Recall(found)), "==", Number(0)), (none,), (some,))]
-    return replace(loop, steps=(*loop.steps, noted)), words
+    return structs_replace(loop, steps=(*loop.steps, noted)), words
 
 
 def brought_behind(d: Discourse, loop: ForEach) -> Steps:
@@ -301,10 +307,10 @@ def brought_behind(d: Discourse, loop: ForEach) -> Steps:
     told = last.then[at + 1 :]
     if not told or not all(isinstance(each, Call) and each.method == "say" for each in told):
         return [loop]
-    inner = [*before, replace(last, then=last.then[:at])] if at else before
-    loop, words = noted_of(d, replace(loop, steps=tuple(inner)), last.condition, told[0])
+    inner = [*before, structs_replace(last, then=last.then[:at])] if at else before
+    loop, words = noted_of(d, structs_replace(loop, steps=tuple(inner)), last.condition, told[0])
     d.went(d.start())
-    d.reports.news, d.reports.told = News(words, True), words[-1]
+    d.reports = replace(d.reports, news=News(words, True), told=words[-1])
     return [loop, BACK, *words]
 
 
@@ -351,9 +357,7 @@ def goes_on(d: Discourse, loop: ForEach, first: Node) -> bool:
         return depends_on_stop(d, first) and not on_answer_of_each(d, first)
     if len(loop.steps) > 1 or first.production.means in STAYS_OUTSIDE:
         return False
-    if d.rounds.round.lookout is not None and any(
-        each.means == "thing_it" for each in inside(first)
-    ):
+    if d.round.lookout is not None and any(each.means == "thing_it" for each in inside(first)):
         return True  # "search all labs for a stapler and bring it to Bob"
     return not any(
         each.production.means == "person_name"

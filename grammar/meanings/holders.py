@@ -4,7 +4,7 @@ whoever says so."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.chart import Node, what_it_means
@@ -22,7 +22,8 @@ ROUNDS: Final = (ForEach, Repeat)
 def asks_who_has(d: Discourse, question: Node, thing: Text) -> None:
     """A question that asks whether somebody has a thing makes it one to be had from them."""
     part = question.parts.get("verb") or question.parts.get("rest")
-    d.answers.held = thing if part is not None and says_having(d, part.start) else None
+    held = thing if part is not None and says_having(d, part.start) else None
+    d.answers = replace(d.answers, held=held)
 
 
 def says_having(d: Discourse, at: int) -> bool:
@@ -53,14 +54,16 @@ def take_from_holder(d: Discourse, thing: Thing) -> bool:
     asked = next((step for done in within for step in done if is_in(step, survey.call)), None)
     if asked is None:
         return False
-    d.answers.held, d.answers.polled_for = None, None
+    d.answers = replace(d.answers, held=None, polled_for=None)
     several = any(isinstance(each, ROUNDS) for each in nodes((asked,)))
     taking = Call("grab", {"thing": thing.value})
     yes = survey.said(d.language.phrase("yes"))
-    d.answers.taking = Taking(thing.value, If(yes, (taking, End()) if several else (taking,)))
+    d.answers = replace(
+        d.answers, taking=Taking(thing.value, If(yes, (taking, End()) if several else (taking,)))
+    )
     note(d, survey.call, [d.answers.taking.step], [])
-    d.scene.holding, d.scene.at, d.scene.away = thing.value, None, True
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = replace(d.scene, holding=thing.value, at=None, away=True)
+    d.scene = d.scene.speaking_of(thing)
     return True
 
 
@@ -70,15 +73,14 @@ def from_whoever_has_it(d: Discourse, thing: Thing, delivered: Callable[[], Step
     taking: Taking | None = d.answers.taking
     if taking is None or taking.thing != thing.value:
         return False
-    d.answers.taking = None
-    d.scene.at = d.scene.with_person = None
-    d.scene.holding = thing.value
+    d.answers = replace(d.answers, taking=None)
+    d.scene = replace(d.scene.wandered(), holding=thing.value)
     bringing = d.sequence(lambda: d.done.extend(delivered()))
     taken, *end = taking.step.then
     brought = If(taking.step.condition, (taken, *bringing, *end))
     for done in (*d.around, d.done):
         done[:] = exchanged(done, taking.step, [brought])
-    d.scene.at, d.scene.away = None, True
+    d.scene = replace(d.scene, at=None, away=True)
     return True
 
 
@@ -94,9 +96,9 @@ def the_one_who_says_so(d: Discourse, node: Node) -> Steps | None:
     no = set(d.norms(condition.start, condition.end)) & set(d.language.words_called("negations"))
     if not said_yes or no or not hands_it_over(then):
         return None
-    d.answers.says_so = True
+    d.answers = replace(d.answers, says_so=True)
     steps: Steps = d.build(then)
-    d.answers.says_so = False
+    d.answers = replace(d.answers, says_so=False)
     return steps
 
 

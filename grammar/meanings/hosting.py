@@ -29,7 +29,7 @@ def introduce(d: Discourse, node: Node) -> Steps:
     who = led(d, node)
     remembered = d.scene.person
     to: Thing = where_sent(d, d.get(node, "to"))
-    d.scene.person = remembered
+    d.scene = replace(d.scene, person=remembered)
     steps: Steps = []
     if to.place is not None and to.place != d.scene.at:
         steps = [*meet(d, who), lead(d, who, to.place)]
@@ -50,9 +50,8 @@ def guide_to_person(d: Discourse, node: Node) -> Steps:
     to = node.parts["other"]
     if thing is not None and isinstance(to, Node) and what_it_means(to) == "person_pronoun":
         someone_else = before is not None and before.value != thing.value
-        d.scene.person = (
-            before if someone_else else d.one_called(to.start, to.end)
-        )  # "her" is no visitor
+        person = before if someone_else else d.one_called(to.start, to.end)
+        d.scene = replace(d.scene, person=person)  # "her" is no visitor
     other: Thing = d.get(node, "other")
     if things and d.scene.thing is not None:
         return deliver(d, replace(d.scene.thing, pronoun=True), other, None)
@@ -75,8 +74,8 @@ def led_to(d: Discourse, person: Thing | None, other: Thing) -> Steps:
     told_apart = other.known or " " in other.text
     if other.place is not None and told_apart and not other.plural:  # "to the man waving there"
         steps.append(Call("find", {"thing": other.value, "place": place}))
-    d.scene.person_on_arrival = (
-        d.scene.person
+    d.scene = replace(
+        d.scene, person_on_arrival=d.scene.person
     )  # "take the visitor to Clara and tell her ...": it is her place
     return steps
 
@@ -115,20 +114,20 @@ def cannot_do(d: Discourse, node: Node) -> Steps:
 def guest_for(d: Discourse, node: Node) -> Steps:
     """ "there is a visitor for Clara in the lobby": it is about the visitor; who is told of it is
     Clara."""
-    d.people.host = d.get(node, "host")
+    host = d.get(node, "host")
+    d.people = replace(d.people, host=host)
     guest: Thing = d.get(node, "person_ref")
     spot: Where | None = d.get(node, "where")
     if spot is not None:
         guest = replace(guest, place=spot.place, furniture=spot.furniture)
     if node.production.fixed.get("coming"):
         guest = expected(guest)
-    d.scene.person = d.people.visitor = guest
-    d.scene.place = guest.place or d.scene.place
-    d.scene.thing_last = False
+    d.scene = replace(d.scene, person=guest)
+    d.people = replace(d.people, visitor=guest)
+    d.scene = replace(d.scene, place=guest.place or d.scene.place, thing_last=False)
     told = d.words(node.start, node.end)
-    d.reports.last, d.reports.step = (
-        Report("only", Text(sentence_form(told)), about_here=False),
-        None,
+    d.reports = replace(
+        d.reports, last=Report("only", Text(sentence_form(told)), about_here=False), step=None
     )
     return aside(d, node)
 
@@ -145,6 +144,6 @@ def announce_guest(d: Discourse, node: Node) -> Steps:
     host = host or d.people.host or known
     if host is None:
         raise NotUnderstood(d.language.phrase("announced_to"))
-    d.people.visitor = d.people.visitor or guest
+    d.people = replace(d.people, visitor=d.people.visitor or guest)
     news = who_has_come(d)
     return [] if news is None else found_out(d, news, host, back=False)

@@ -57,8 +57,9 @@ def offer(d: Discourse, survey: Survey, names: tuple[str, ...]) -> None:
     if not any(each is survey.call for each in nodes(tuple(d.done))):
         raise NotUnderstood(d.language.phrase("too_complicated"))
     d.done[:] = exchanged(d.done, survey.call, [call])
-    at = d.answers.surveys.index(survey)
-    d.answers.surveys[at] = replace(survey, call=call, options=names)
+    answered = replace(survey, call=call, options=names)
+    surveys = tuple(answered if each == survey else each for each in d.answers.surveys)
+    d.answers = replace(d.answers, surveys=surveys)
 
 
 def place_just_named(d: Discourse, kind: str | None = None) -> Value | None:

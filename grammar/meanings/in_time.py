@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.discourse import ANYONE, Discourse, Meeting, Steps
 from grammar.meanings.claims import leave_off, meet_there
@@ -26,7 +26,7 @@ def note_waiting(d: Discourse) -> None:
     """Keep the scene behind a step that has just waited for somebody."""
     last = d.done[-1] if d.done else None
     if isinstance(last, Call) and last.method == "wait_for":
-        d.people.awaited = Awaited(last, d.scene.copy())
+        d.people = replace(d.people, awaited=Awaited(last, d.scene))
 
 
 def too_late(
@@ -49,9 +49,9 @@ def too_late(
         return None  # waited for without end, or said just before
     then: Steps = d.done[at + 1 :]
     del d.done[at:]
-    after = d.scene.copy()
-    d.scene = awaited.scene.copy()
-    d.scene.looked_in = d.scene.at  # others are not looked for just there
+    after = d.scene
+    d.scene = awaited.scene
+    d.scene = replace(d.scene, looked_in=d.scene.at)  # others are not looked for just there
     meet_there(d, met)
     otherwise = make()
     leave_off(d, after)

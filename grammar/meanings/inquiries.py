@@ -4,6 +4,7 @@ say how much is to be brought.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from grammar.chart import Node
@@ -38,8 +39,7 @@ def ask_topic(d: Discourse, node: Node) -> Steps:
         person = replace(person, plural=True)
         kind = question.production.fixed.get("kind", "who")
     steps = ask_one(d, node, replace(person, place=place or person.place))
-    d.answers.put = d.answers.surveys[-1]
-    d.answers.polled_for = kind
+    d.answers = replace(d.answers, put=d.answers.surveys[-1], polled_for=kind)
     if node.production.fixed.get("told"):  # "I wonder whether Bob has time, go and ask him"
         d.done.extend(steps)
         d.done.extend(tell_speaker(d))
@@ -54,9 +54,9 @@ def wondered(d: Discourse, node: Node) -> Steps:
     whom: Thing | None = d.get(node, "whom")
     steps = ask_topic(d, node)
     if whom is not None:
-        d.answers.put = None
+        d.answers = replace(d.answers, put=None)
     if d.answers.last is not None:
-        d.answers.wondered, d.answers.wonder = tuple(steps), (d.answers.last, whom)
+        d.answers = replace(d.answers, wondered=tuple(steps), wonder=(d.answers.last, whom))
     return steps
 
 
@@ -97,10 +97,11 @@ def bring_many(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     if person is None and survey.who is not None and survey.where is None:
         person = Thing(survey.who, known=True, person=True)
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     fetching = deliver(d, replace(thing, pronoun=False), person, d.get(node, "where"))
-    d.deliveries.so_many = Repeat(Recall(d.answers.last), tuple(fetching))
-    return [d.deliveries.so_many]
+    so_many = Repeat(Recall(d.answers.last), tuple(fetching))
+    d.deliveries = replace(d.deliveries, so_many=so_many)
+    return [so_many]
 
 
 def as_many_as_answered(d: Discourse, node: Node) -> Steps | None:
@@ -137,7 +138,7 @@ def as_many_as_answered(d: Discourse, node: Node) -> Steps | None:
 def thing_answered(d: Discourse, node: Node) -> Thing:
     """ "what he wanted", "the one she chose": the thing that an answer names."""
     person: Thing | None = d.get(node, "person_ref")
-    surveys: list[Survey] = d.answers.surveys
+    surveys: Sequence[Survey] = d.answers.surveys
     if person is not None and person.known:
         surveys = [each for each in surveys if each.who in (person.value, None)] or surveys
     survey = surveys[-1] if surveys else None
@@ -152,7 +153,7 @@ def thing_answered(d: Discourse, node: Node) -> Thing:
     source: Where | None = d.get(node, "from")
     if source is not None:
         found = replace(found, place=source.place, furniture=source.furniture)
-    d.scene.thing, d.scene.thing_last = found, True
+    d.scene = d.scene.speaking_of(found)
     return found
 
 

@@ -9,9 +9,8 @@ from grammar.plan import Call, Value
 
 
 def lead(d: Discourse, person: Thing, place: Value) -> Call:
-    d.scene.left = {**d.scene.left, person.value: place}
-    d.scene.at = d.scene.place = place
-    d.scene.with_person = person.value
-    d.scene.person = d.scene.led = replace(person, place=None, furniture=None, here=True)
-    d.scene.thing_last = False
+    d.scene = replace(d.scene, left={**d.scene.left, person.value: place})
+    d.scene = d.scene.arrived(place)
+    there = replace(person, place=None, furniture=None, here=True)
+    d.scene = replace(d.scene.speaking_of_person(there), with_person=person.value, led=there)
     return Call("guide", {"person": person.value, "place": place})

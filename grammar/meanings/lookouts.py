@@ -8,11 +8,10 @@ bring it to me") ends with the first that is found.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from dataclasses import replace as replace_thing
+from dataclasses import dataclass, replace
 from typing import Final
 
-from msgspec.structs import replace
+from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
@@ -90,16 +89,16 @@ class Lookout:
         if self.tell == "all":
             condition, tell = negated(condition), "all"
         noted = If(condition, (Collect(found, Recall(self.place)),))
-        d.done[at] = replace(loop, steps=(*loop.steps, *self.trait.first, noted))
+        d.done[at] = structs_replace(loop, steps=(*loop.steps, *self.trait.first, noted))
         d.done.insert(0, Remember(found, Items(())))
-        d.rounds.round.lookout = None
+        d.round = replace(d.round, lookout=None)
         return Told(found_places(d, tell, found, so=condition), [])
 
     def counted(self, d: Discourse) -> Told:
         """How many of them there are at all the places."""
         if self.thing is None or self.trait.denied:
             return self.told(d, "many")
-        d.rounds.round.lookout = None
+        d.round = replace(d.round, lookout=None)
         return summed_up(d, "total", self.thing)
 
     def at(self, d: Discourse) -> int | None:
@@ -122,17 +121,16 @@ class Lookout:
     def until_found(self, d: Discourse) -> None:
         """Nothing but a search, after all, if it can be one."""
         at, places = self.at(d), named_places(d, self.places)
-        d.rounds.round.lookout = None
+        d.round = replace(d.round, lookout=None)
         if at is not None and places and self.thing is not None and not self.trait.denied:
             d.done[at : at + 1] = search_in(d, self.thing, places)
-            d.scene.at, d.scene.away = None, True
+            d.scene = replace(d.scene, at=None, away=True)
 
     def meet(self, d: Discourse) -> None:
         """The scene at a place where it is so."""
         if self.thing is not None and self.thing.person and not self.trait.denied:
-            d.scene.person, d.scene.with_person = (
-                replace_thing(self.thing, here=True),
-                self.thing.value,
+            d.scene = replace(
+                d.scene, person=replace(self.thing, here=True), with_person=self.thing.value
             )
 
 
@@ -145,21 +143,23 @@ def round_check(d: Discourse, node: Node) -> Steps:
         return []
     place = d.variable("place")
     before = d.scene.thing
-    d.scene.at = d.scene.place = Recall(place)
+    d.scene = d.scene.arrived(Recall(place))
     trait: Trait = d.get(node, "place_trait")
-    d.scene.at = d.scene.with_person = None
-    d.answers.last = d.reports.last = d.reports.news = d.reports.counted = d.reports.checked = None
+    d.scene = d.scene.wandered()
+    d.answers = replace(d.answers, last=None)
+    d.reports = replace(d.reports, last=None, news=None, counted=None, checked=None)
     thing = trait.thing
     if thing is None:
-        d.scene.thing = before
+        d.scene = replace(d.scene, thing=before)
     elif thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
+        d.scene = d.scene.speaking_of_person(thing)
     else:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
     tell = str(node.production.fixed.get("tell", "which"))
     until = bool(node.production.fixed.get("until"))
     one = until or definite(d, node.parts["place_trait"], thing)
-    d.rounds.round.lookout = Lookout(place, places, trait, thing, d.depth, one, tell)
+    lookout = Lookout(place, places, trait, thing, d.depth, one, tell)
+    d.round = replace(d.round, lookout=lookout)
     return [round_of(d, places, [], place)]
 
 
@@ -180,21 +180,20 @@ def looks_out(d: Discourse, clause: Node) -> bool:
     if isinstance(thing, list) or thing.place is not None or thing.several or thing.here:
         return False
     if thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
+        d.scene = d.scene.speaking_of_person(thing)
     else:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
     seen = Trait(Holds(Ask("sees", {"thing": sought(d, thing)})), [], thing)
     one = definite(d, part, thing)
-    d.rounds.round.lookout = Lookout(
-        visits.variable, visits.items, seen, thing, d.depth, one, "which"
-    )
+    lookout = Lookout(visits.variable, visits.items, seen, thing, d.depth, one, "which")
+    d.round = replace(d.round, lookout=lookout)
     return True
 
 
 def told_of_lookout(d: Discourse, many: bool) -> Told | None:
     """What a round has looked for, or how many of them it has found; a search through several
     places is such a round if "how many there are" is asked."""
-    lookout: Lookout | None = d.rounds.round.lookout
+    lookout: Lookout | None = d.round.lookout
     if lookout is None and many:
         lookout = search_as_round(d)
     if lookout is None:
@@ -208,7 +207,7 @@ def found_before_coming_back(d: Discourse) -> None:
     looked = d.done[-2] if len(d.done) > 1 and d.done[-1] == BACK else None
     if searched(looked) is not None or isinstance(looked, ForEach):
         d.done.pop()
-        d.scene.at = None
+        d.scene = replace(d.scene, at=None)
 
 
 def looked_on_visits(d: Discourse, node: Node) -> Lookout | None:
@@ -249,7 +248,7 @@ def where_met(d: Discourse, person: Thing | None) -> Told | None:
                 break
             case If(condition=Holds(value=Ask(method="find", arguments={"thing": who}))) as met:
                 if who == person.value:
-                    d.done[at] = replace(met, then=(noted, *met.then))
+                    d.done[at] = structs_replace(met, then=(noted, *met.then))
                     break
     else:
         raise NotUnderstood(d.language.phrase("which_places"))
@@ -306,10 +305,10 @@ def search_as_round(d: Discourse) -> Lookout | None:
 
 def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
     """What a round was to find out, told to somebody; None if there is none to tell of."""
-    if d.rounds.round.lookout is None:
+    if d.round.lookout is None:
         return None
-    words = d.rounds.round.lookout.told(d).words
-    d.reports.news, d.reports.told = News(words, person is None), words[-1]
+    words = d.round.lookout.told(d).words
+    d.reports = replace(d.reports, news=News(words, person is None), told=words[-1])
     if person is None or is_me(person):
         return [*go_back(d, []), *words]
     return speak_to(d, person, words)
@@ -319,7 +318,7 @@ def tell_lookout(d: Discourse, person: Thing | None) -> Steps | None:
 def look_now(d: Discourse, node: Node) -> Steps:
     """ "Is there a mug in the kitchen? Go and look ...": that is what is done already."""
     told = bool(d.done) and d.reports.told == d.done[-1]  # "is there a mug anywhere? Go and look"
-    asked = d.reports.news or d.reports.last or d.rounds.round.lookout or d.rounds.round.such
+    asked = d.reports.news or d.reports.last or d.round.lookout or d.round.such
     if not told and asked is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
@@ -342,10 +341,10 @@ def why(d: Discourse, clause: Node) -> None:
     part = wish.parts.get("thing") or wish.parts["person_ref"]
     thing: Thing = d.build(part)
     if thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
+        d.scene = d.scene.speaking_of_person(thing)
     else:
-        d.scene.thing, d.scene.thing_last = thing, True
-    d.background.append(d.words(clause.start, clause.end))
+        d.scene = d.scene.speaking_of(thing)
+    d.background += (d.words(clause.start, clause.end),)
 
 
 @meaning("looking_for")
@@ -354,8 +353,8 @@ def looking_for(d: Discourse, node: Node) -> Steps:
     to look for her; else what to do."""
     person: Thing = d.get(node, "person_ref")
     if any(token.kind == "word" for token in d.tokens[node.end : node.end + 2]):
-        d.background.append(d.words(node.start, node.end))
-        d.scene.person, d.scene.thing_last = person, False
+        d.background += (d.words(node.start, node.end),)
+        d.scene = d.scene.speaking_of_person(person)
         return []
     return look_for(d, person)
 
@@ -365,7 +364,7 @@ def told_at_last(d: Discourse) -> Steps:
     waiting: News | None = d.reports.news
     if d.depth == 1 and waiting is not None and waiting.waiting and waiting.whom is not None:
         return speak_to(d, waiting.whom, waiting.words)
-    lookout: Lookout | None = d.rounds.round.lookout
+    lookout: Lookout | None = d.round.lookout
     if lookout is None or lookout.depth != d.depth:
         return []
     at = lookout.at(d)

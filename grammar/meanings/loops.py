@@ -177,7 +177,8 @@ def so_often(d: Discourse, times: Leaf | Node, make: Callable[[], Steps]) -> Ste
     body = each_who_comes(d, make)
     if stays(body):  # "stay in the lobby until five visitors have come"
         who = Thing(as_value(d.get(times, "kind", ANYONE)), person=True, plural=True, here=True)
-        d.scene.person = d.reports.last_counted = who
+        d.scene = replace(d.scene, person=who)
+        d.reports = replace(d.reports, last_counted=who)
         return [*held(body), Repeat(number, (Call("wait_for", {"thing": who.value}),))]
     return there_first([Repeat(number, tuple(body))])
 
@@ -210,8 +211,8 @@ def watched(d: Discourse, node: Node) -> Steps:
     place: Value | None = d.get(node, "place")
     if place is not None:
         going = go(d, place)
-        d.scene.looked_in = place
-        d.people.on_duty = "guard"
+        d.scene = replace(d.scene, looked_in=place)
+        d.people = replace(d.people, on_duty="guard")
         return [*going, *d.build(node.parts["steps"])]
     thing = noun_of(d, node)
     going = []
@@ -219,7 +220,7 @@ def watched(d: Discourse, node: Node) -> Steps:
         going = go(d, thing.place)
     elif thing.known and thing.person:
         going = look_for(d, thing)
-    d.branch.met = None
+    d.branch = replace(d.branch, met=None)
     meet_there(d, Meeting(replace(thing, place=None)))
     return [*going, *d.build(node.parts["steps"])]
 
@@ -426,24 +427,22 @@ def each_place(d: Discourse, items: Value, steps: Leaf | Node | None, goes: bool
     here = Recall(variable)
     going = Call("goto", {"place": here})
     before = d.scene.at
-    d.scene.place = here
-    d.scene.at = here if goes else None
+    d.scene = replace(d.scene, place=here, at=here if goes else None)
     body: Steps = []
     if steps is not None:
-        outer = d.rounds.in_loop, d.rounds.stop
-        d.rounds.in_loop, d.rounds.stop = True, here
+        outer = d.loops
+        d.loops = replace(d.loops, in_loop=True, stop=here)
         body = d.build(steps)
-        d.rounds.in_loop, d.rounds.stop = outer
+        d.loops = replace(d.loops, in_loop=outer.in_loop, stop=outer.stop)
     first = body[0] if body else None
     moves = isinstance(first, Call) and first.method in ("goto", "guide", "find")
     search = until_found(d, here, items, body)
     if search:  # "look for it in all wards": until it is found
-        d.scene.at = d.scene.with_person = None
+        d.scene = d.scene.wandered()
         return search
     if not moves and (goes or not mentions(body, here)):
         body = [going, *body]
-    d.scene.at = None if body else before
-    d.scene.with_person = None
+    d.scene = replace(d.scene, at=None if body else before, with_person=None)
     end = end_of_stop(body, here) if goes else len(body)
     return [*brought_behind(d, ForEach(variable, items, tuple(body[:end]))), *body[end:]]
 
@@ -461,7 +460,7 @@ def for_each_of_them(d: Discourse, node: Node) -> Steps:
         going.insert(0, last)
     if len(going) < 2:
         d.done.extend(going)
-        if d.rounds.in_loop and d.scene.at is not None and d.scene.at == d.scene.place:
+        if d.loops.in_loop and d.scene.at is not None and d.scene.at == d.scene.place:
             inside: Steps = d.build(node.parts["steps"])  # "visit the labs and ... in each"
             return inside
         raise NotUnderstood(d.language.phrase("which_places"))
@@ -486,11 +485,12 @@ def at_each_stop(d: Discourse, stops: list[Call], steps: Leaf | Node) -> Steps:
     del d.done[-len(stops) :]
     here = Recall(d.variable("place"))
     last = d.scene.place
-    d.scene.at = d.scene.place = here
-    outer, d.rounds.in_loop = d.rounds.in_loop, True
+    d.scene = d.scene.arrived(here)
+    outer = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
     body = d.build(steps)
-    d.rounds.in_loop = outer
-    d.scene.at = d.scene.place = last
+    d.loops = replace(d.loops, in_loop=outer)
+    d.scene = d.scene.arrived(last)
     leading = Call("guide", {**stops[0].arguments, "place": here})
     places = Items(tuple(each.arguments["place"] for each in stops))
     return [ForEach(here.name, places, (leading, *body))]
@@ -503,13 +503,16 @@ def check_each_place(d: Discourse, node: Node) -> Steps:
     if isinstance(sought_for, list):  # "check every ward for Alice or Bob"
         raise NotUnderstood(d.language.phrase("one_person"))
     variable = d.variable("place")
-    d.scene.at = d.scene.place = Recall(variable)
+    d.scene = d.scene.arrived(Recall(variable))
     if sought_for.person:
-        d.scene.person, d.scene.with_person = replace(sought_for, here=True), sought_for.value
-    outer, d.rounds.in_loop = d.rounds.in_loop, True
+        d.scene = replace(
+            d.scene, person=replace(sought_for, here=True), with_person=sought_for.value
+        )
+    outer = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
     body = d.build(node.parts["steps"])
-    d.rounds.in_loop = outer
-    d.scene.at = d.scene.with_person = None
+    d.loops = replace(d.loops, in_loop=outer)
+    d.scene = d.scene.wandered()
     seen_there = Holds(Ask("sees", {"thing": sought_for.value}))
     match body:
         case [*before, If(condition=same, then=then, otherwise=())] if same == seen_there:
@@ -538,13 +541,16 @@ def for_each_person(d: Discourse, node: Node) -> Steps:
     person: Thing | None = d.get(node, "person_ref")
     if times is None and person is not None and person.place is not None:
         going, one = go(d, person.place), Recall(d.variable("person"))
-        d.scene.person = replace(person, value=one, known=True, here=True, place=None)
-        d.scene.with_person = one
+        d.scene = replace(
+            d.scene,
+            person=replace(person, value=one, known=True, here=True, place=None),
+            with_person=one,
+        )
         body = d.build(node.parts["steps"])
-        d.scene.person = d.scene.with_person = None
+        d.scene = replace(d.scene, person=None, with_person=None)
         return [*going, ForEach(one.name, Ask("people"), tuple(body))]
     who = person.value if person is not None else Text(ANYONE)
-    d.scene.person = Thing(who, person=True, here=True)
+    d.scene = replace(d.scene, person=Thing(who, person=True, here=True))
     wait = Call("wait_for", {"thing": who})
     going = go(d, person.place) if person is not None and person.place is not None else []
     body = d.build(node.parts["steps"])

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
@@ -48,10 +49,12 @@ NOBODY_ELSE: Final[dict[str, Any]] = {
 def say_that(d: Discourse, node: Node) -> Steps:
     """ "tell her that lunch is ready" -> "Lunch is ready."; to somebody, "they" becomes "you"."""
     part = node.parts["text"]
-    d.people.guest, d.people.others = guest_spoken_of(d), others_spoken_of(d)
+    guest = guest_spoken_of(d)
+    others = others_spoken_of(d)
+    d.people = replace(d.people, guest=guest, others=others)
     host_told(d, node)
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
-    d.answers.message = node
+    d.answers = replace(d.answers, message=node)
     if node.production.fixed.get("to_me"):
         person = person_me(d, node)
     note_reminder(d, node, person, "fact")
@@ -65,7 +68,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     more = node.parts.get("more")  # "that the doctor is here and that she can come in"
     if more is not None:
         text, end = f"{text} {told_to(d, more, person)}", more.end
-    d.people.named.extend(people_named(d, part.start, end))
+    d.names(*people_named(d, part.start, end))
     saying = Call("say", {"text": answers_in(d, text, part.start, end)})
     if is_me(person):
         return [*back_to_speaker(d), saying]
@@ -380,7 +383,8 @@ def _noun_follows(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> b
 def remind(d: Discourse, node: Node) -> Steps:
     """ "remind me of the meeting", "remind Bob in ten minutes to come"."""
     delay: Steps = d.get(node, "delay") or []
-    d.people.guest = guest_spoken_of(d)
+    guest = guest_spoken_of(d)
+    d.people = replace(d.people, guest=guest)
     person: Thing | None = d.get(node, "person_ref")
     part = node.parts["text"]
     phrase = str(node.production.fixed.get("phrase", "reminder"))

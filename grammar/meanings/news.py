@@ -61,7 +61,7 @@ def said_themselves(d: Discourse, node: Node, person: Thing) -> bool:
 
 def go_back(d: Discourse, more: Steps) -> Steps:
     """Back to who gave the command, unless the robot is there."""
-    before = () if d.rounds.in_loop else d.around
+    before = () if d.loops.in_loop else d.around
     if not moved([*before, *d.done, *more]) or (d.done and not more and d.done[-1] == BACK):
         return []
     d.came_back()
@@ -73,7 +73,7 @@ def back_to_speaker(d: Discourse) -> Steps:
     that he has none". Whoever came along is there already."""
     steps = nodes((*d.around, d.done))
     led = any(isinstance(each, Call) and each.method in ("guide", "follow") for each in steps)
-    if led or d.rounds.in_loop or d.scene.at == Recall(START):
+    if led or d.loops.in_loop or d.scene.at == Recall(START):
         return []
     if d.scene.at is None and not d.scene.away:
         return go_back(d, [])
@@ -83,7 +83,7 @@ def back_to_speaker(d: Discourse) -> Steps:
 
 def in_round(d: Discourse) -> bool:
     """Whether the robot is at one of the places that it goes round."""
-    return d.rounds.in_loop and isinstance(d.scene.at, Recall) and d.scene.at == d.scene.place
+    return d.loops.in_loop and isinstance(d.scene.at, Recall) and d.scene.at == d.scene.place
 
 
 def told_at_end(d: Discourse, person: Thing | None) -> bool:
@@ -96,7 +96,7 @@ def told_at_end(d: Discourse, person: Thing | None) -> bool:
         return False
     if not any(each is d.reports.step for each in nodes(tuple(d.done))):
         return False
-    d.reports.after_round = (person, "each")
+    d.reports = replace(d.reports, after_round=(person, "each"))
     return True
 
 
@@ -107,10 +107,10 @@ def take_back(d: Discourse, found: News) -> None:
         del d.done[len(d.done) - len(found.words) :]
         if d.done and d.done[-1] == BACK:
             d.done.pop()
-            d.scene.at = None
-        d.reports.news = replace(found, to_all=False, waiting=True)
+            d.scene = replace(d.scene, at=None)
+        d.reports = replace(d.reports, news=replace(found, to_all=False, waiting=True))
     else:
-        d.reports.news = replace(found, to_all=False)
+        d.reports = replace(d.reports, news=replace(found, to_all=False))
 
 
 @meaning("told_list")
@@ -125,4 +125,4 @@ def not_back_yet(d: Discourse) -> None:
     """What was to be told to the speaker is told elsewhere: the way back comes to nothing."""
     if d.done and d.done[-1] == BACK:
         d.done.pop()
-        d.scene.at = None
+        d.scene = replace(d.scene, at=None)

@@ -56,7 +56,7 @@ def thing(d: Discourse, node: Node) -> Thing:
         every=bool(node.production.fixed.get("every")),
         noun=head_word(one, d.language),
     )
-    d.scene.thing, d.scene.thing_last = found, True
+    d.scene = d.scene.speaking_of(found)
     return found
 
 
@@ -140,7 +140,7 @@ def thing_other(d: Discourse, node: Node) -> Thing:
     new = node.production.fixed.get("new")
     other = None if new else other_of_two(d, head_word(noun, d.language) if noun else "")
     if other is not None:
-        d.scene.thing, d.scene.thing_last = other, True
+        d.scene = d.scene.speaking_of(other)
         return other
     if before is None or not before.noun or (noun and head_word(noun, d.language) != before.noun):
         if new and noun:
@@ -158,7 +158,7 @@ def thing_other(d: Discourse, node: Node) -> Thing:
         other = replace(
             other, place=place, furniture=before.furniture, preposition=before.preposition
         )
-    d.scene.thing, d.scene.thing_last = other, True
+    d.scene = d.scene.speaking_of(other)
     return other
 
 
@@ -192,7 +192,7 @@ def thing_something(d: Discourse, node: Node) -> Thing:
         word = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("bring_what", word=word), gap=(node.start, node.end))
     found = described(d, "object", node, lies_about=True)
-    d.scene.thing, d.scene.thing_last = found, True
+    d.scene = d.scene.speaking_of(found)
     return found
 
 
@@ -225,8 +225,8 @@ def thing_opening(d: Discourse, node: Node) -> Thing:
     if not isinstance(place, Text):  # "this room", wherever that is
         word = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("what_is_it", word=word), gap=(node.start, node.end))
-    found = d.scene.thing = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
-    d.scene.thing_last = True
+    found = Thing(Text(f"{d.called(place.value)} {d.get(node, 'opener')}"))
+    d.scene = d.scene.speaking_of(found)
     return found
 
 
@@ -256,5 +256,5 @@ def thing_from(d: Discourse, node: Node) -> Thing:
     """ "one from the supply room", of what was spoken of."""
     spot: Where = d.get(node, "from")
     found = replace(thing_it(d, node), place=spot.place, furniture=spot.furniture, pronoun=False)
-    d.scene.thing, d.scene.thing_last = found, True
+    d.scene = d.scene.speaking_of(found)
     return found

@@ -3,7 +3,7 @@ yes, unless it is said what is done then."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
@@ -54,18 +54,20 @@ def offer(d: Discourse, node: Node) -> Steps:
     known = survey.who is not None
     receiver = Thing(survey.who or person.value, known=known, person=True, here=True)
     giving = If(Compare(Recall(answer), "==", Text(yes)), tuple(brought_there(d, thing, receiver)))
-    d.deliveries.offers.append(Offer(survey.call, thing, (giving,), receiver, d.depth))
+    offer = Offer(survey.call, thing, (giving,), receiver, d.depth)
+    d.deliveries = replace(d.deliveries, offers=(*d.deliveries.offers, offer))
     return steps
 
 
 def brought_there(d: Discourse, thing: Thing, receiver: Thing) -> Steps:
     """How somebody gets a thing, without a change in what is spoken of."""
-    scene, outer, before = d.scene.copy(), d.rounds.at_people, d.deliveries.last
-    d.rounds.at_people = True
+    scene, outer, before = d.scene, d.loops.at_people, d.deliveries.last
+    d.loops = replace(d.loops, at_people=True)
     steps = d.sequence(lambda: d.done.extend(deliver(d, thing, receiver, None)))
-    d.scene = scene.copy()
-    d.rounds.at_people, d.deliveries.last = outer, before
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = scene
+    d.loops = replace(d.loops, at_people=outer)
+    d.deliveries = replace(d.deliveries, last=before)
+    d.scene = d.scene.speaking_of(thing)
     return steps
 
 

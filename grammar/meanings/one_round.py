@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from grammar.discourse import (
@@ -28,10 +29,11 @@ One = Callable[[Any], Steps]
 
 def round_of_steps(d: Discourse, make: Make) -> Steps:
     """The steps of one round of a loop."""
-    d.scene.with_person = d.scene.holding = None
-    outer, d.rounds.in_loop = d.rounds.in_loop, True
+    d.scene = replace(d.scene, with_person=None, holding=None)
+    outer = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
     steps = d.sequence(lambda: d.done.extend(make()))
-    d.rounds.in_loop = outer
+    d.loops = replace(d.loops, in_loop=outer)
     return guard_finds(d, steps)
 
 

@@ -80,16 +80,19 @@ def report(d: Discourse, node: Node) -> Steps:
         steps = found_for(d, person, found)
         if is_me(person) and d.answers.last is not None and not mentions(steps, BACK):
             steps = [*back_to_speaker(d), *steps]
-        d.reports.told = steps[-1] if steps else None
+        d.reports = replace(d.reports, told=steps[-1] if steps else None)
         return steps
     fixed = node.production.fixed
-    known = d.reports.news is not None and d.reports.news is d.rounds.round.present
+    known = d.reports.news is not None and d.reports.news is d.round.present
     if known and isinstance(info, Node) and info.means == "names_here":
         return told_again(d, person)  # "see if Alice and Bob are in, and tell me who is there"
     if isinstance(info, Node) and info.production.fixed.get("total") and in_round(d):
         return told_in_total(d, found, person)
-    d.reports.open = person is None and bool(fixed.get("open", not fixed.get("to_me")))
-    d.reports.counts = person is None and bool(fixed.get("counted"))
+    d.reports = replace(
+        d.reports,
+        open=person is None and bool(fixed.get("open", not fixed.get("to_me"))),
+        counts=person is None and bool(fixed.get("counted")),
+    )
     return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
 
 
@@ -149,8 +152,8 @@ def news(d: Discourse, node: Node) -> Steps:
     else:
         steps += words
     if steps:
-        d.reports.told = steps[-1]
-    d.reports.news = News(words, person is None and place is None)
+        d.reports = replace(d.reports, told=steps[-1])
+    d.reports = replace(d.reports, news=News(words, person is None and place is None))
     return steps
 
 
@@ -167,8 +170,8 @@ def wants_to_know(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "whom")
     told: list[Told] = d.get(node, "told")
     words = [step for each in told for step in each.words]
-    d.reports.news = News(words, False, waiting=True, whom=person)
-    d.scene.person, d.scene.thing_last = person, False
+    d.reports = replace(d.reports, news=News(words, False, waiting=True, whom=person))
+    d.scene = d.scene.speaking_of_person(person)
     return [step for each in told for step in each.first]
 
 
@@ -206,8 +209,8 @@ def tell_that(d: Discourse, node: Node) -> Steps:
 def tell_why(d: Discourse, node: Node) -> Steps:
     """ "and let Bob know, so that he can go with her": what was found out; why is left as it is."""
     why = node.parts["why"]
-    d.background.append(d.words(why.start, why.end))
-    d.command.resolved.update(range(why.start, why.end))
+    d.background += (d.words(why.start, why.end),)
+    d.resolves(range(why.start, why.end))
     return tell_that(d, node)
 
 
@@ -218,7 +221,7 @@ def tell_me_that(d: Discourse, node: Node) -> Steps:
         return told_to_sent(d, *sent)
     search = searched_last(d, node, "person_ref")
     of_answers(d, node)
-    d.reports.open = False
+    d.reports = replace(d.reports, open=False)
     if search is not None and search.person:
         return where_it_is(d, search, None)  # "find Alice and inform me"
     return coming_back(d, node, tell_speaker(d))
@@ -289,7 +292,7 @@ def tell_speaker(d: Discourse) -> Steps:
     if d.answers.last is not None or d.answers.code is not None:
         words = known_words(d)
         start = d.start()
-        going = d.scene.at is not None or moved([*(() if d.rounds.in_loop else d.around), *d.done])
+        going = d.scene.at is not None or moved([*(() if d.loops.in_loop else d.around), *d.done])
         d.went(start)
         back = Call("goto", {"place": start})
         return [back, *words] if going and last != back else words
@@ -320,10 +323,10 @@ def news_again(d: Discourse, person: Thing | None) -> Steps | None:
     if person is None or is_me(person):
         if not found.waiting and d.done[len(d.done) - len(found.words) :] == found.words:
             return []  # it is told already
-        d.reports.news = replace(found, waiting=False)
+        d.reports = replace(d.reports, news=replace(found, waiting=False))
         return [*go_back(d, []), *found.words]
     take_back(d, found)
-    d.reports.news = replace(d.reports.news, waiting=False)
+    d.reports = replace(d.reports, news=replace(d.reports.news, waiting=False))
     return speak_to(d, person, found.words)
 
 

@@ -51,7 +51,7 @@ def guide(d: Discourse, node: Node) -> Steps:
     if isinstance(room, Node) and any(each.means == "place_there" for each in inside(room)):
         there = d.build(room).place
     source: Where | None = d.get(node, "source")
-    in_turn = id(pronoun) in d.rounds.bound  # met there already
+    in_turn = id(pronoun) in d.loops.bound  # met there already
     if source is not None and source.place is not None and not in_turn:
         thing = replace(thing, place=source.place, here=False)
     if thing.value == d.scene.with_person:
@@ -125,12 +125,14 @@ def guide_where_wanted(d: Discourse, node: Node) -> Steps:
     if d.answers.last is not None and d.scene.place == Recall(d.answers.last):
         return [*meet(d, thing), lead(d, thing, d.scene.place)]
     steps = meet(d, thing)
-    d.answers.last = d.variable("place")
-    d.answers.options, d.scene.place = (), Recall(d.answers.last)
+    answer = d.variable("place")
+    place = Recall(answer)
+    d.answers = replace(d.answers, last=answer, options=())
+    d.scene = replace(d.scene, place=place)
     arguments: dict[str, Value] = {"question": Text(d.language.phrase("where_to"))}
     if thing.known:
         arguments["person"] = thing.value
-    return [*steps, Call("ask", arguments, save_as=d.answers.last), lead(d, thing, d.scene.place)]
+    return [*steps, Call("ask", arguments, save_as=answer), lead(d, thing, place)]
 
 
 def led(d: Discourse, node: Node) -> Thing:
@@ -188,12 +190,15 @@ def fetch_person(d: Discourse, node: Node) -> Steps:
         return announced
     also = led_before(d) if node.production.fixed.get("too") else None
     steps = meet(d, replace(thing, here=False)) or look_for(d, thing)
-    d.people.visitor = d.people.visitor if thing.known else thing
+    d.people = replace(d.people, visitor=d.people.visitor if thing.known else thing)
     if also is not None:
         return [*steps, lead(d, thing, also)]
-    d.deliveries.fetched = lead(d, replace(thing, here=False), d.start())
-    d.scene.place = place  # "take Alice to room 3, then get Bob and bring him there, too"
-    return [*steps, d.deliveries.fetched]
+    leading = lead(d, replace(thing, here=False), d.start())
+    d.deliveries = replace(d.deliveries, fetched=leading)
+    d.scene = replace(
+        d.scene, place=place
+    )  # "take Alice to room 3, then get Bob and bring him there, too"
+    return [*steps, leading]
 
 
 def led_before(d: Discourse) -> Value | None:
@@ -277,7 +282,9 @@ def carry_it(d: Discourse, node: Node) -> Steps:
 def brought_here(d: Discourse, person: Thing) -> Steps:
     """ "get the visitor and bring them to me": once."""
     if d.deliveries.fetched is not None and d.done[-1:] == [d.deliveries.fetched]:
-        d.deliveries.fetched = None  # that is not all the same as to be fetched
+        d.deliveries = replace(
+            d.deliveries, fetched=None
+        )  # that is not all the same as to be fetched
         return []
     return [*meet(d, person), lead(d, person, d.start())]
 
@@ -323,12 +330,16 @@ def follow(d: Discourse, node: Node) -> Steps:
 def followed(d: Discourse, person: Thing, place: Value | None) -> Call:
     """Go after somebody, as far as a place if one is named."""
     arguments: dict[str, Value] = {"person": person.value}
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     if place is not None:
-        arguments["to"] = d.scene.at = d.scene.place = place
-    d.scene.with_person = person.value
-    d.scene.person = replace(person, place=None, furniture=None, here=True)
-    d.scene.thing_last = False
+        arguments["to"] = place
+        d.scene = d.scene.arrived(place)
+    d.scene = replace(
+        d.scene,
+        with_person=person.value,
+        person=replace(person, place=None, furniture=None, here=True),
+        thing_last=False,
+    )
     return Call("follow", arguments)
 
 

@@ -24,12 +24,11 @@ def person_name(d: Discourse, node: Node) -> Thing:
     leaf = node.parts["person"]
     assert isinstance(leaf, Leaf)
     name = d.one_of(leaf).name
-    d.people.named.append(name)
-    d.scene.person = d.people.last_named = Thing(
-        Text(name), known=True, person=True
-    )  # "Alice in her office"
+    person = Thing(Text(name), known=True, person=True)
+    d.people = replace(d.people, named=(*d.people.named, name), last_named=person)
+    d.scene = replace(d.scene, person=person)  # "Alice in her office"
     found = replace(described(d, name, node), value=Text(name), known=True, person=True)
-    d.scene.person, d.scene.thing_last = found, False
+    d.scene = d.scene.speaking_of_person(found)
     return found
 
 
@@ -64,7 +63,7 @@ def person_kind(d: Discourse, node: Node) -> Thing:
         if found.text == f"{kind} named {each.name}":
             found = replace(found, value=Text(each.name), known=True)
     found = where_spoken_of(d, node, found)
-    d.scene.person, d.scene.thing_last = found, False
+    d.scene = d.scene.speaking_of_person(found)
     return found
 
 
@@ -105,12 +104,12 @@ def by_furniture(d: Discourse, person: Thing) -> Thing:
 def person_in(d: Discourse, node: Node) -> Thing:
     """ "bring it to him in his office": where he is to be found."""
     person: Thing = d.get(node, "person_ref")
-    d.scene.person = person
+    d.scene = replace(d.scene, person=person)
     place = d.get(node, "own_place")
-    d.scene.person = (
-        person if d.scene.with_person == person.value else replace(person, place=place, here=False)
-    )
-    return d.scene.person
+    if d.scene.with_person != person.value:
+        person = replace(person, place=place, here=False)
+    d.scene = replace(d.scene, person=person)
+    return person
 
 
 @meaning("person_pronoun")
@@ -119,8 +118,8 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     host = host_here(d, node)
     if host is not None:
         d.called_so(host, node.start, node.end)
-        d.people.named.append(host.text)
-        d.scene.person = host
+        d.names(host.text)
+        d.scene = replace(d.scene, person=host)
         return host
     if (
         d.scene.person is not None
@@ -152,7 +151,7 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         return replace(d.scene.person, here=not elsewhere and (met or not d.scene.person.known))
     owner = owner_of(d)
     if owner is not None:
-        d.people.named.append(owner.value)
+        d.names(owner.value)
         host = Thing(owner, known=True, person=True, here=True)
         d.called_so(host, node.start, node.end)
         return host
@@ -209,16 +208,16 @@ def host_here(d: Discourse, node: Node) -> Thing | None:
 @meaning("person_group")
 def person_group(d: Discourse, node: Node) -> Thing:
     """ "Alice, Bob and Carol"."""
-    d.scene.person = together(listed(d, node))
-    d.scene.group = d.scene.person.group
-    return d.scene.person
+    person = together(listed(d, node))
+    d.scene = replace(d.scene, person=person, group=person.group)
+    return person
 
 
 @meaning("person_either")
 def person_either(d: Discourse, node: Node) -> list[Thing] | Thing:
     """ "Alice or Bob": one of them; for a condition, both as a group."""
     people = listed(d, node)
-    return people if d.rounds.taking_apart else together(people)
+    return people if d.loops.taking_apart else together(people)
 
 
 def known_by_name(d: Discourse, found: Thing, kind: str) -> tuple[Text, ...]:
@@ -238,14 +237,16 @@ def person_group_kind(d: Discourse, node: Node) -> Thing:
     named = known_by_name(d, found, kind)
     if named:
         left_out = but.group.items if but and isinstance(but.group, Items) else (but and but.value,)
-        d.scene.group = Items(tuple(name for name in named if name not in left_out))
+        d.scene = replace(
+            d.scene, group=Items(tuple(name for name in named if name not in left_out))
+        )
         return replace(found, known=True, group=d.scene.group)
     if but is not None:
         if found.text != ANYONE:
             raise NotUnderstood(d.language.phrase("but_whom"))
         found = replace(found, but=but.group or Items((but.value,)))
-    d.scene.group = Ask("people")
-    d.scene.person, d.scene.thing_last = found, False
+    d.scene = replace(d.scene, group=Ask("people"))
+    d.scene = d.scene.speaking_of_person(found)
     return replace(found, group=d.scene.group, every=True)
 
 
@@ -259,10 +260,12 @@ def person_count(d: Discourse, node: Node) -> Thing:
     number = int(d.get(node, "count"))
     named = known_by_name(d, found, kind)
     if d.tokens[node.start].norm in d.language.speech.get("definite", ()) and len(named) == number:
-        d.scene.group = Items(named)  # "the two doctors", where the world knows two
+        d.scene = replace(
+            d.scene, group=Items(named)
+        )  # "the two doctors", where the world knows two
         return replace(found, known=True, group=d.scene.group)
     found = replace(found, count=number)
-    d.scene.person, d.scene.thing_last = replace(found, here=True, plural=False), False
+    d.scene = d.scene.speaking_of_person(replace(found, here=True, plural=False))
     return found
 
 
@@ -271,7 +274,7 @@ def person_coming(d: Discourse, node: Node) -> Thing:
     """ "every visitor who comes in": one after the other, without end."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = Thing(Text(kind), person=True, here=True)
-    d.scene.person, d.scene.thing_last = found, False
+    d.scene = d.scene.speaking_of_person(found)
     spot: Where | None = d.get(node, "from")
     return replace(found, coming=True, place=None if spot is None else spot.place)
 
@@ -279,8 +282,8 @@ def person_coming(d: Discourse, node: Node) -> Thing:
 @meaning("whoever_at")
 def whoever_at(d: Discourse, node: Node) -> Thing:
     """ "tell reception", "ask the kitchen": whoever is there."""
-    person = d.scene.person = Thing(Text(ANYONE), d.get(node, "place"), person=True)
-    d.scene.thing_last = False
+    person = Thing(Text(ANYONE), d.get(node, "place"), person=True)
+    d.scene = d.scene.speaking_of_person(person)
     return person
 
 
@@ -288,13 +291,13 @@ def whoever_at(d: Discourse, node: Node) -> Thing:
 def person_first(d: Discourse, node: Node) -> Thing:
     """ "the first visitor you meet": whoever comes first; on guard, each of them."""
     if d.people.came is not None:  # "wait for Alice or Bob and take whoever comes first ..."
-        d.scene.person, d.scene.thing_last = d.people.came, False
+        d.scene = d.scene.speaking_of_person(d.people.came)
         return d.people.came
     if d.people.on_duty == "guard" and node.production.fixed.get("whoever"):
         return person_coming(d, node)
     kind = str(d.get(node, "kind_of_person", ANYONE))
     found = replace(by_furniture(d, described(d, kind, node)), person=True, first=True)
-    d.scene.person, d.scene.thing_last = replace(found, first=False, place=None, here=True), False
+    d.scene = d.scene.speaking_of_person(replace(found, first=False, place=None, here=True))
     return found
 
 

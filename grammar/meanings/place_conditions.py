@@ -46,18 +46,20 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
         place = d.scene.place  # "is the library free? If it is, ...": told where it was asked
     if place is not None and place != d.scene.at:
         d.went(place)
-        d.command.pending.append(Call("goto", {"place": place}))
-    d.branch.room = place or d.scene.at or d.scene.place
+        d.first_of_all(Call("goto", {"place": place}))
+    d.branch = replace(d.branch, room=place or d.scene.at or d.scene.place)
     trait: Trait = d.get(node, "place_trait")
     checked = checked_just_now(d, trait) if place is None else None
     if checked is not None:
         return checked
     if place is None and trait.thing is not None and (looked := just_looked_for(d, trait.thing)):
-        d.branch.met = Meeting(trait.thing, holds=not trait.denied, sought=not in_round(d))
+        d.branch = replace(
+            d.branch, met=Meeting(trait.thing, holds=not trait.denied, sought=not in_round(d))
+        )
         return Not(looked) if trait.denied else looked
-    d.command.pending += trait.first
+    d.first_of_all(*trait.first)
     if trait.thing is not None and in_round(d):
-        d.branch.met = Meeting(trait.thing, holds=not trait.denied)
+        d.branch = replace(d.branch, met=Meeting(trait.thing, holds=not trait.denied))
     return negated(trait.condition) if none else trait.condition
 
 
@@ -78,7 +80,8 @@ def checked_just_now(d: Discourse, trait: Trait) -> Condition | None:
     if known is None or about is None:
         return None
     # Those who are in a room may be several, so that "her" is somebody else.
-    d.branch.met = Meeting(
-        replace(about, plural=about.person or about.plural), holds=not trait.denied
+    d.branch = replace(
+        d.branch,
+        met=Meeting(replace(about, plural=about.person or about.plural), holds=not trait.denied),
     )
     return Not(known) if trait.denied else known

@@ -4,6 +4,7 @@ and c", "Alice's and Bob's office"."""
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse
@@ -170,8 +171,9 @@ def place_tail(d: Discourse, node: Node) -> Value:
             tuple(name.name for name in leaf.value),
             (node.start, node.end),
         )
-    d.scene.place = Text(alike[0])
-    return d.scene.place
+    place = Text(alike[0])
+    d.scene = replace(d.scene, place=place)
+    return place
 
 
 @meaning("places_owned")

@@ -17,7 +17,7 @@ from grammar.plan import Ask, Call, Items, Recall, Remember, Text, Value
 @meaning("place_name")
 def place_name(d: Discourse, node: Node) -> Value:
     place: Value = d.get(node, "place")
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     return place
 
 
@@ -32,7 +32,7 @@ def each_place(d: Discourse, node: Node) -> Value:
 
 def only_taken_apart(d: Discourse, node: Node) -> None:
     """Refuse a phrase that speaks of several where nothing makes a loop of it."""
-    if not d.rounds.taking_apart:
+    if not d.loops.taking_apart:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("one_of_several", words=words))
 
@@ -72,8 +72,9 @@ def place_called_after(d: Discourse, owner: str, node: Leaf | Node) -> Value:
         raise unknown_place(d, d.words(node.start, node.end), node)
     if len(own) > 1:
         raise d.which(node.start, node.end, tuple(own))
-    d.scene.place = Text(own[0])
-    return d.scene.place
+    place = Text(own[0])
+    d.scene = replace(d.scene, place=place)
+    return place
 
 
 @meaning("place_any")
@@ -99,10 +100,10 @@ def place_either(d: Discourse, node: Node) -> list[Value]:
 def place_where(d: Discourse, node: Node) -> Thing:
     """ "where Bob is", "a room with a printer": wherever that is found."""
     only_taken_apart(d, node)
-    spoken_of = d.scene.thing, d.scene.thing_last
+    before = d.scene
     found: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     if stands_behind_it(d, node):
-        d.scene.thing, d.scene.thing_last = spoken_of
+        d.scene = replace(d.scene, thing=before.thing, thing_last=before.thing_last)
     return found
 
 
@@ -215,7 +216,7 @@ def place_of_furniture(d: Discourse, node: Node) -> Value:
     home = home_of(d, furniture)
     if home is None:
         raise NotUnderstood(d.language.phrase("unknown_place", name=furniture))
-    d.scene.place = home
+    d.scene = replace(d.scene, place=home)
     return home
 
 
@@ -257,7 +258,7 @@ def at_own_place(d: Discourse, person: Thing) -> Thing:
     last = d.done[-1] if d.done else None
     sent = last is None or (isinstance(last, Call) and last.method in ("goto", "guide"))
     spoken_of = (d.scene.at is not None or d.scene.place is not None) and sent
-    return person if spoken_of or d.rounds.in_loop else replace(person, place=own_place(d, person))
+    return person if spoken_of or d.loops.in_loop else replace(person, place=own_place(d, person))
 
 
 def listed(d: Discourse, node: Node) -> list[Thing]:

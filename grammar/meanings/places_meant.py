@@ -40,11 +40,12 @@ def place_of_kind(d: Discourse, node: Node) -> Value:
     if len(places) > 1:
         answered = place_just_named(d, kind)
         if answered is not None:  # "ask whom he wants to visit and lead him to the office"
-            d.scene.place = answered
+            d.scene = replace(d.scene, place=answered)
             return answered
         raise d.which(node.start, node.end, tuple(place.name for place in places))
-    d.scene.place = Text(places[0].name)
-    return d.scene.place
+    place = Text(places[0].name)
+    d.scene = replace(d.scene, place=place)
+    return place
 
 
 @meaning("place_own")
@@ -63,7 +64,7 @@ def place_own(d: Discourse, node: Node) -> Value:
         who = replace(who, value=who.group.items[-1])
     named = place_just_named(d, kind) if who is None or not who.known else None
     if named is not None:  # "ask her whom she wants to see, and take her to their office"
-        d.scene.place = named
+        d.scene = replace(d.scene, place=named)
         return named
     owner = who.text if who is not None and who.known else None
     if kind is None:  # "her room", whatever it is called here
@@ -81,15 +82,16 @@ def place_own(d: Discourse, node: Node) -> Value:
         )
     if len(own or places) > 1:
         raise d.which(node.start, node.end, tuple(each.name for each in own or places))
-    d.scene.place = Text((own or places)[0].name)
-    return d.scene.place
+    place = Text((own or places)[0].name)
+    d.scene = replace(d.scene, place=place)
+    return place
 
 
 @meaning("place_there")
 def place_there(d: Discourse, node: Node) -> Value:
     named = place_just_named(d)
     if named is not None:
-        d.scene.place = named
+        d.scene = replace(d.scene, place=named)
         return named
     if (
         d.people.host is not None and not d.done
@@ -98,21 +100,21 @@ def place_there(d: Discourse, node: Node) -> Value:
             raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
         return theirs
     unsaid = d.scene.place in (None, Recall(START))
-    if unsaid and (d.rounds.round.such is not None or first_of_round(d)):
-        return Recall(
-            str(d.rounds.round.such)
-        )  # "find an empty room, come back, and take them there"
+    if unsaid and (d.round.such is not None or first_of_round(d)):
+        return Recall(str(d.round.such))  # "find an empty room, come back, and take them there"
     if d.scene.place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
+    there = d.scene.place
     if (
         d.command.place_before is not None
         and d.deliveries.taken_from is None
         and taken_elsewhere(d, node)
     ):
-        d.scene.place = d.command.place_before
-    if d.scene.delivered is not None and d.scene.place == Recall(START):
-        d.scene.place = before_fetching(d, node)
-    return d.scene.place
+        there = d.command.place_before
+    if d.scene.delivered is not None and there == Recall(START):
+        there = before_fetching(d, node)
+    d.scene = replace(d.scene, place=there)
+    return there
 
 
 def taken_elsewhere(d: Discourse, node: Node) -> bool:
@@ -144,9 +146,9 @@ def before_fetching(d: Discourse, node: Node) -> Value:
     ]
     places = [place for place in sent if place not in (d.scene.at_pick_up, Recall(START))]
     if (
-        not places and d.rounds.stop is not None
+        not places and d.loops.stop is not None
     ):  # "for each lab, get a cup in the kitchen and put it there"
-        return d.rounds.stop
+        return d.loops.stop
     if not places:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     return places[-1]
@@ -171,7 +173,7 @@ def place_found(d: Discourse, node: Node) -> Value:
     )
     if place is None:
         raise NotUnderstood(d.language.phrase("where_is_there"))
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     return place
 
 
@@ -185,8 +187,9 @@ def place_other(d: Discourse, node: Node) -> Value:
     places = d.lexicon.place_kinds[d.get(node, "kind") or kind_of_place(d, node)]
     others = [each.name for each in places if Text(each.name) != d.scene.place]
     if len(others) == 1:
-        d.scene.place = Text(others[0])
-        return d.scene.place
+        place = Text(others[0])
+        d.scene = replace(d.scene, place=place)
+        return place
     raise d.which(node.start, node.end, tuple(others))
 
 
@@ -211,5 +214,5 @@ def not_chosen(d: Discourse) -> Value | None:
     other = Recall(d.variable("other"))
     chosen = Compare(Recall(d.answers.last), "==", two)
     d.done += [Remember(other.name, two), If(chosen, (Remember(other.name, one),))]
-    d.scene.place = other
+    d.scene = replace(d.scene, place=other)
     return other

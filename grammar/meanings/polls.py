@@ -78,7 +78,8 @@ def polled(d: Discourse, kind: str, said: Said | None) -> Told:
     if kind not in ("answers", "missing"):
         surveys = of_one_question(surveys)
     if said is not None:
-        d.answers.said = _meant(d, surveys, said)
+        meant = _meant(d, surveys, said)
+        d.answers = replace(d.answers, said=meant)
     answer: Wanted = d.answers.said or yes(d)
     if kind == "list":  # of those who said yes, or of what they said
         agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
@@ -115,7 +116,7 @@ def _kept(d: Discourse, key: tuple[Any, ...], name: str) -> tuple[Recall, bool]:
     key = (*key, *(id(survey.call) for survey in asked_before(d)))
     if key in d.answers.notes:
         return Recall(d.answers.notes[key]), False
-    d.answers.notes[key] = d.variable(name)
+    d.notes(key, d.variable(name))
     return Recall(d.answers.notes[key]), True
 
 
@@ -244,7 +245,7 @@ def thing_chosen(d: Discourse, node: Node) -> Thing:
     found = Thing(chosen_most(d, asked_before(d)))
     if spot is not None:
         found = replace(found, place=spot.place, furniture=spot.furniture)
-    d.scene.thing, d.scene.thing_last = found, True
+    d.scene = d.scene.speaking_of(found)
     return found
 
 
@@ -381,7 +382,7 @@ def told_as_asked(d: Discourse, start: int, end: int) -> Told | None:
         return None
     if in_loop(d, survey.call) or several_asked(d):
         return polled(d, "answers", None)
-    d.command.resolved.update(range(start, end))
+    d.resolves(range(start, end))
     return Told([Call("say", {"text": Recall(survey.call.save_as)})], [])
 
 

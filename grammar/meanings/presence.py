@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
-from msgspec.structs import replace
+from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing
@@ -68,8 +69,8 @@ def presence_told(d: Discourse, node: Node) -> Told:
         here = Holds(Ask("sees", {"thing": person.value}))
         first.append(Call("goto", {"place": Text(place)}))
         first.append(If(here, (Collect(found, person.value),)))
-    d.scene.at = d.scene.with_person = None
-    d.rounds.round.present_found = found, people
+    d.scene = d.scene.wandered()
+    d.round = replace(d.round, present_found=(found, people))
     none = d.say("nobody_of_them")
     some = d.say("these_are_there", names=Recall(found))
     return Told([if_any(found, none, some)], first)
@@ -94,12 +95,12 @@ def those_met(
     ]
     first: Steps = [Remember(found, Items(())), *going]
     if at is not None and isinstance(loop, ForEach):
-        d.done[at] = replace(loop, steps=(*loop.steps, *notes))
+        d.done[at] = structs_replace(loop, steps=(*loop.steps, *notes))
         d.done.insert(0, first.pop())
     else:
         first += notes
     if not missing:
-        d.rounds.round.present_found = found, people
+        d.round = replace(d.round, present_found=(found, people))
     none, some = ("nobody_missing", "who_missing") if missing else NONE_AND_SOME
     return Told([if_any(found, d.say(none), d.say(some, names=Recall(found)))], first)
 
@@ -123,10 +124,11 @@ def if_any(found: str, none: Step, some: Step) -> If:
 def presence(d: Discourse, node: Node) -> Steps:
     """ "see if Alice or Bob is in the office": told to the speaker, if nobody else is named."""
     told = presence_told(d, node)
-    d.reports.last = d.reports.counted = d.reports.checked = d.rounds.round.lookout = None
+    d.round = replace(d.round, lookout=None)
+    d.reports = replace(d.reports, last=None, counted=None, checked=None)
     back = go_back(d, told.first)
-    d.reports.news, d.reports.told = News(told.words, True), told.words[-1]
-    d.rounds.round.present = d.reports.news
+    d.reports = replace(d.reports, news=News(told.words, True), told=told.words[-1])
+    d.round = replace(d.round, present=d.reports.news)
     return [*told.first, *back, *told.words]
 
 
@@ -134,16 +136,17 @@ def presence(d: Discourse, node: Node) -> Steps:
 def present_so_many(d: Discourse, node: Node) -> Condition:
     """ "see if Alice and Bob are in. If both are there, ...", "if neither is in"."""
     if (
-        d.rounds.round.present_found is None
+        d.round.present_found is None
         or d.reports.news is None
-        or d.reports.news is not d.rounds.round.present
+        or d.reports.news is not d.round.present
     ):
         return seen_here(d, node)
-    found, people = d.rounds.round.present_found
+    found, people = d.round.present_found
     take_back(d, d.reports.news)
-    d.reports.news = None
-    d.scene.person, d.scene.thing_last = together(people), False
-    d.scene.group, d.branch.met = d.scene.person.group, None
+    d.reports = replace(d.reports, news=None)
+    person = together(people)
+    d.scene = replace(d.scene.speaking_of_person(person), group=person.group)
+    d.branch = replace(d.branch, met=None)
     how = str(node.production.fixed["how"])
     operator, number = {
         "all": ("==", len(people)),
@@ -157,7 +160,8 @@ def present_so_many(d: Discourse, node: Node) -> Condition:
     some = d.say("these_are_there", names=Recall(found))
     either = if_any(found, none, some)
     so: Step = none if how == "none" else either if how == "not_all" else some
-    d.rounds.round.claims = Claims(condition, so, either)
+    claims = Claims(condition, so, either)
+    d.round = replace(d.round, claims=claims)
     return condition
 
 
@@ -203,11 +207,12 @@ def met_on_round(d: Discourse, places: Value | None) -> Told:
     first: Steps = [Remember(found, Items(()))]
     if at is not None and isinstance(loop, ForEach):
         said = any(each is d.reports.step for each in nodes(loop))
-        loop = replace(loop, steps=loop.steps if said else (*loop.steps, *notes))
+        loop = structs_replace(loop, steps=loop.steps if said else (*loop.steps, *notes))
         d.done[at] = replacing(loop, d.reports.step, notes) if said else loop
         d.done.insert(0, first.pop())
     elif places is not None:
         first.append(round_of(d, places, notes, here.name))
-    d.reports.last = d.rounds.round.lookout = None
+    d.round = replace(d.round, lookout=None)
+    d.reports = replace(d.reports, last=None)
     some = d.say("people_seen", value=Recall(found))
     return Told([if_any(found, d.say("nobody_there"), some)], first)

@@ -113,7 +113,7 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     again = [] if put_more_exactly(d, node) else sourced(d, node)
     if again is not None:
         return again
-    scene, known = d.scene.copy(), frozenset(d.variables)
+    scene, known = d.scene, frozenset(d.variables)
     within = setting_of(node) or node
     several = [part for part in phrases(within) if speaks_of_several(d, node, part)]
     several.sort(key=lambda part: part.production.rule == "thing")  # things change hands inside
@@ -131,9 +131,11 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
     within_source = {id(part) for part in inside(node.parts.get("from"))}
     sources = [part for part in several if id(part) in within_source]  # "out of all offices"
     several = [part for part in several if id(part) not in within_source]
-    outer, d.deliveries.only_fetches = d.deliveries.only_fetches, only_fetches(node)
+    outer = d.deliveries.only_fetches
+    bare = only_fetches(node)
+    d.deliveries = replace(d.deliveries, only_fetches=bare)
     steps = over(d, sources, lambda: taken_from_there(d, node, several, make))
-    d.deliveries.only_fetches = outer
+    d.deliveries = replace(d.deliveries, only_fetches=outer)
     if node.means in FETCHES:
         keep_fetching(d, lambda: distributed(d, node, make), steps, scene, known)
     return steps
@@ -142,15 +144,15 @@ def distributed(d: Discourse, node: Node, make: Make) -> Steps:
 def gone_among(d: Discourse, part: Node) -> Steps | None:
     """ "go to every patient in ward a and ask them ...": to where they are, for nobody knows who
     they are; what is asked or said next is for each of them. None of people who have names."""
-    scene = d.scene.copy()
+    scene = d.scene
     people = d.build(part)
     if part.means not in ("person_kind", "person_group_kind") or isinstance(people.group, Items):
         people = None
     if people is None or people.place is None:
-        d.scene = scene.copy()
+        d.scene = scene
         return None
     going = go(d, people.place)
-    d.scene.person, d.scene.thing_last = replace(people, place=None, here=True), False
+    d.scene = d.scene.speaking_of_person(replace(people, place=None, here=True))
     return going
 
 
@@ -164,14 +166,14 @@ def taken_from_there(d: Discourse, node: Node, several: list[Node], make: Make) 
     """The steps of a command for several things, of which is said where they are taken from."""
     outer, place = d.deliveries.taken_from, d.scene.place
     things = any(OVER[part.means] in OF_THINGS for part in several)
-    d.deliveries.taken_from = d.get(node, "from") if things and "from" in node.parts else outer
+    source = d.get(node, "from") if things and "from" in node.parts else outer
+    d.deliveries = replace(d.deliveries, taken_from=source)
     if "source" in node.parts and any(OVER[part.means] is over_people for part in several):
-        d.deliveries.taken_from = d.get(
-            node, "source"
-        )  # "take everybody from the lounge to the exit"
-    d.scene.place = place  # "there" is not where they are taken from
+        source = d.get(node, "source")  # "take everybody from the lounge to the exit"
+        d.deliveries = replace(d.deliveries, taken_from=source)
+    d.scene = replace(d.scene, place=place)  # "there" is not where they are taken from
     steps = over(d, several, make)
-    d.deliveries.taken_from = outer
+    d.deliveries = replace(d.deliveries, taken_from=outer)
     return steps
 
 
@@ -190,15 +192,13 @@ def one_each(d: Discourse, node: Node, several: list[Node]) -> list[Node]:
     things = [part for part in several if OVER[part.means] in (over_it, over_things)]
     if not people or len(things) != 1:
         return several
-    scene = d.scene.copy()
+    scene = d.scene
     thing: Thing = d.build(things[0])
     enough = thing.count is None or as_many(d, node, d.build(people[0]), thing.count)
-    d.scene = scene.copy()
+    d.scene = scene
     if not enough or "every" in things[0].production.fixed:
         return several
-    d.rounds.bound[id(things[0])] = replace(
-        thing, every=False, plural=False, pronoun=False, count=None
-    )
+    d.bind(things[0], replace(thing, every=False, plural=False, pronoun=False, count=None))
     return people
 
 
@@ -225,7 +225,7 @@ def phrases(node: Node) -> Iterator[Node]:
 def speaks_of_several(d: Discourse, node: Node, part: Node) -> bool:
     """Whether a noun phrase of a command makes a loop."""
     together = node.means in TOGETHER
-    if id(part) in d.rounds.bound:
+    if id(part) in d.loops.bound:
         return False
     if (node.means, part.means) in KNOWN_TO:
         return False
@@ -272,10 +272,10 @@ def all_of(d: Discourse, node: Node, part: Node) -> bool:
         return False
     if "from" in node.parts or any(each.means == "each_place" for each in inside(part)):
         return True  # "the cups in the meeting rooms"
-    before = d.scene.thing, d.scene.thing_last
+    before = d.scene
     thing: Thing = d.build(part)
-    d.scene.thing, d.scene.thing_last = before
-    in_round = d.rounds.in_loop and isinstance(d.scene.at, Recall)
+    d.scene = replace(d.scene, thing=before.thing, thing_last=before.thing_last)
+    in_round = d.loops.in_loop and isinstance(d.scene.at, Recall)
     somewhere = in_round or thing.place is not None or bool(thing.furniture)
     # Where the world knows no such thing, its plural may be the name of one: "the pickles".
     return not thing.here and (somewhere or (isinstance(head, Leaf) and head.slot == "object"))
@@ -295,19 +295,16 @@ def over(d: Discourse, several: list[Node], make: Make) -> Steps:
     if not several:
         return make()
     first, *rest = several
-    d.rounds.taking_apart = True
+    d.loops = replace(d.loops, taking_apart=True)
     try:
         phrase = d.build(first)
     finally:
-        d.rounds.taking_apart = False
+        d.loops = replace(d.loops, taking_apart=False)
 
     def one(bound: Any) -> Steps:
         """The steps for one of them."""
-        d.rounds.bound[id(first)] = bound
-        try:
+        with d.bound(first, bound):
             return over(d, rest, make)
-        finally:
-            del d.rounds.bound[id(first)]
 
     return OVER[first.means](d, first, phrase, one)
 
@@ -328,13 +325,13 @@ def over_people(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
 def each_named(d: Discourse, group: Value, person: Thing, one: One) -> Steps:
     """Each of several people whom the world knows."""
     who = Recall(d.variable("person"))
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     fetched = d.done[-1] if d.done and fetches(d, d.done[-1], group) else None
     body = round_of_steps(d, lambda: one(Thing(who, known=True, person=True)))
     if fetched is not None and any(leads(each) for each in nodes(tuple(body))):
         d.done.remove(fetched)  # "get Alice and Bob and take them to the lounge": not here first
-    d.scene.at = d.scene.with_person = None
-    d.scene.person, d.scene.thing_last = person, False
+    d.scene = d.scene.wandered()
+    d.scene = d.scene.speaking_of_person(person)
     return [ForEach(who.name, group, tuple(body))]
 
 
@@ -357,10 +354,10 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     if by_name:
         who = Recall(d.variable("person"))
     met = Thing(who, known=by_name, person=True, here=True)
-    outer = d.rounds.at_people
-    d.rounds.at_people = d.rounds.at_people or bool(going)
+    outer = d.loops.at_people
+    d.loops = replace(d.loops, at_people=d.loops.at_people or bool(going))
     body = round_of_steps(d, lambda: one(met))
-    d.rounds.at_people = outer
+    d.loops = replace(d.loops, at_people=outer)
     moment = [*takewhile(_is_moment, body)] if not person.coming and person.count is None else []
     if len(moment) < len(body):  # "remind everyone at five": that is one time for all of them
         going, body = [*going, *moment], body[len(moment) :]
@@ -369,20 +366,18 @@ def each_met(d: Discourse, person: Thing, one: One) -> Steps:
     meeting: Steps = [] if by_name else [Call("wait_for", {"thing": who})]
     if leaves(body, here):
         meeting.insert(0, Call("goto", {"place": d.start() if here is None else here}))
-        d.scene.at = d.scene.with_person = None
+        d.scene = d.scene.wandered()
     waited = None if by_name or person.coming else waited_for(d, who)
     if waited is not None:  # "wait for two visitors and take each of them to the lounge"
-        d.scene.person, d.scene.thing_last = (
-            replace(person, place=None, here=True, count=None),
-            False,
-        )
+        d.scene = d.scene.speaking_of_person(replace(person, place=None, here=True, count=None))
         return [Repeat(waited, (Call("wait_for", {"thing": who}), *body))]
     fetched = fetched_before(body, who, here) if not by_name and not person.coming else 0
     if fetched:  # whoever is met is forgotten on the way to what they get
         meeting = [*body[:fetched], meeting[-1]]
     steps = (*meeting, *body[fetched:])
-    d.scene.person = replace(person, place=None, here=True, coming=False)
-    d.scene.thing_last = False
+    d.scene = replace(
+        d.scene, person=replace(person, place=None, here=True, coming=False), thing_last=False
+    )
     if person.coming:
         return [*going, Forever(steps)]
     if person.count is not None:
@@ -432,14 +427,14 @@ def each_their_own(d: Discourse, one: One) -> Steps | None:
     asked = each_asked(d)
     if asked is None:
         return None
-    scene = d.scene.copy()
-    d.scene.at = None
+    scene = d.scene
+    d.scene = replace(d.scene, at=None)
     steps = one(asked)
     if uses_answer(d, steps):
         return steps
     wished = if_wished(d, steps)
     if wished is None:
-        d.scene = scene.copy()
+        d.scene = scene
     return wished
 
 
@@ -468,7 +463,7 @@ def over_those_who(d: Discourse, node: Node, person: Thing, one: One) -> Steps:
     """ "each one who said yes": for whoever was asked, if that is what they answered."""
     survey = d.answers.surveys[-1]
     answer: Condition = wanted(d, survey, d.get(node, "said")).given(survey)
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [If(answer, tuple(round_of_steps(d, lambda: one(person))))]
 
 
@@ -479,7 +474,7 @@ def over_either_person(d: Discourse, node: Node, people: list[Thing], one: One) 
     if not isinstance(looked_for[-1], If) or not isinstance(looked_for[-1].condition, Not):
         return looked_for
     whoever = Thing(Text(ANYONE), person=True, here=True)
-    d.scene.person, d.scene.with_person, d.scene.thing_last = whoever, whoever.value, False
+    d.scene = replace(d.scene, person=whoever, with_person=whoever.value, thing_last=False)
     anybody = Either(tuple(Holds(Ask("find", found(d, each).arguments)) for each in people))
     return [If(Not(anybody), (not_found(d, whoever),))]
 

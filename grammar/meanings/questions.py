@@ -72,7 +72,7 @@ LONGEST_OFFERED: Final = 3
 def ask(d: Discourse, node: Node) -> Steps:
     """Ask somebody a question and remember the answer."""
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
-    d.answers.message = node
+    d.answers = replace(d.answers, message=node)
     question = node.parts.get("question")
     if person is None and isinstance(question, Node) and "asked_one" in question.parts:
         person = d.build(question.parts["asked_one"])  # "find out what Bob wants"
@@ -85,18 +85,18 @@ def ask(d: Discourse, node: Node) -> Steps:
         person is None
         and d.scene.with_person is None
         and d.scene.at is None
-        and not d.rounds.in_loop
+        and not d.loops.in_loop
     )
     if nobody and node.production.fixed.get("of_those_there"):
         raise NotUnderstood(d.language.phrase("no_question"))
     if person is not None and person.coming:
         going = go(d, person.place) if person.place is not None else []
         waiting = Call("wait_for", {"thing": person.value})
-        d.scene.person = replace(person, coming=False, place=None)
+        d.scene = replace(d.scene, person=replace(person, coming=False, place=None))
         return [*going, Forever((waiting, *ask_one(d, node, d.scene.person)))]
     steps = ask_one(d, node, person)
     if node.production.fixed.get("to_me"):
-        d.answers.put = d.answers.surveys[-1]
+        d.answers = replace(d.answers, put=d.answers.surveys[-1])
     return steps
 
 
@@ -122,21 +122,21 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
     elif question.production.fixed.get("where"):
         if len(d.lexicon.places) <= MOST_OPTIONS:
             arguments["options"] = Ask("places")
-        d.scene.place = Recall(name)
+        d.scene = replace(d.scene, place=Recall(name))
     elif (places := places_asked_for(d, question)) is not None:
         arguments["options"] = places
-        d.scene.place = Recall(name)
+        d.scene = replace(d.scene, place=Recall(name))
     spoken_of = places_named(d, question.start, question.end)
     if len(spoken_of) == 1 and d.scene.place != Recall(name):
-        d.scene.place = Text(
-            spoken_of[0]
+        d.scene = replace(
+            d.scene, place=Text(spoken_of[0])
         )  # "ask whether they want to see the lab; take them there"
     # "ask Bob whether Alice is in; if so, tell her ..."
-    d.people.named.extend(people_named(d, question.start, question.end))
+    d.names(*people_named(d, question.start, question.end))
     if whom.many and asks_for_some(d, question):
-        d.answers.polled_for = "who"
+        d.answers = replace(d.answers, polled_for="who")
     if node.production.fixed.get("vote"):
-        d.answers.polled_for = "each"  # nobody asks who voted for what
+        d.answers = replace(d.answers, polled_for="each")  # nobody asks who voted for what
     offered(d, question, options, name)
     return put(
         d, whom, Call("ask", arguments, save_as=name), options, nouns_of(d, question, options)
@@ -145,11 +145,12 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
 
 def worded(d: Discourse, question: Node, whom: Audience) -> tuple[str, tuple[str, ...]]:
     """The words of a question for those who are asked, and the answers that it offers."""
-    d.answers.asking_each = whom.many
-    d.answers.asking_one = None if whom.many else whom.person
+    d.answers = replace(
+        d.answers, asking_each=whom.many, asking_one=None if whom.many else whom.person
+    )
     text: str = capital(put_for(d, "asked_singly", d.build(question)))
     options = named_themselves(d, options_of(d, question), whom.person)
-    d.answers.asking_each, d.answers.asking_one = False, None
+    d.answers = replace(d.answers, asking_each=False, asking_one=None)
     return text, options
 
 
@@ -192,18 +193,16 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     ):
         subject = None  # "whether I may borrow the projector"
     rest = subject or question.parts.get("rest")
-    d.answers.asked_for = None
+    d.answers = replace(d.answers, asked_for=None)
     if question.production.fixed.get("wanted"):
         asked_for = question.parts["noun"]
         what = singular(d.noun_words(asked_for.start, asked_for.end), d.language)
         if isinstance(asked_for, Node):  # "the key to the supply room"
             what = d.build(asked_for).text
-        d.answers.asked_for = Text(what)
-        d.answers.held = d.answers.asked_for if d.language.phrase("yes") in options else None
-        d.scene.thing, d.scene.thing_last = (
-            Thing(d.answers.asked_for, noun=head_word(what, d.language)),
-            True,
-        )
+        wanted = Text(what)
+        held = wanted if d.language.phrase("yes") in options else None
+        d.answers = replace(d.answers, asked_for=wanted, held=held)
+        d.scene = d.scene.speaking_of(Thing(wanted, noun=head_word(what, d.language)))
         return
     counted = question.parts.get("wh")
     noun = counted.parts.get("noun") if isinstance(counted, Node) else None
@@ -216,13 +215,12 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         and "subject" not in question.parts
         and d.scene.place != Recall(name)
     ):
-        d.scene.thing, d.scene.thing_last = (
-            Thing(Recall(name)),
-            False,
+        d.scene = replace(
+            d.scene, thing=Thing(Recall(name)), thing_last=False
         )  # "what he would like to drink"
     elif noun is not None:  # "how many blankets they need"
         what = singular(d.noun_words(noun.start, noun.end), d.language)
-        d.scene.thing, d.scene.thing_last = Thing(Text(what)), False
+        d.scene = replace(d.scene, thing=Thing(Text(what)), thing_last=False)
     elif (
         not options
         and {"verb", "aux"} & question.parts.keys()
@@ -231,33 +229,27 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         and not _no_thing(d, counted)
         and not _no_thing(d, question.parts.get("aux"))
     ):
-        d.scene.thing, d.scene.thing_last = (
-            Thing(Recall(name)),
-            False,
+        d.scene = replace(
+            d.scene, thing=Thing(Recall(name)), thing_last=False
         )  # "ask what they need and bring it"
     elif "noun" in question.parts and d.scene.place != Recall(name):
-        d.scene.thing, d.scene.thing_last = (
-            Thing(Recall(name)),
-            False,
+        d.scene = replace(
+            d.scene, thing=Thing(Recall(name)), thing_last=False
         )  # "ask for her favourite fruit"
     about = question.parts.get("subject")
     if isinstance(about, Leaf) and about.slot in ("noun", "object"):  # "si la soupe est prête"
         if not names_people(d, about.start, about.end):
-            d.scene.thing, d.scene.thing_last = (
-                Thing(Text(d.noun_words(about.start, about.end))),
-                True,
-            )
+            d.scene = d.scene.speaking_of(Thing(Text(d.noun_words(about.start, about.end))))
     elif isinstance(about, Node) and any(each in about.parts for each in ("noun", "object")):
         start, end = without_little_words(d, about.start, about.end)
-        d.scene.thing, d.scene.thing_last = Thing(Text(d.noun_words(start, end))), False
+        d.scene = replace(d.scene, thing=Thing(Text(d.noun_words(start, end))), thing_last=False)
     if (lost := sought_after(d, question)) is not None:
-        d.scene.thing, d.scene.thing_last = lost, True
+        d.scene = d.scene.speaking_of(lost)
         return
     numbers = all(each.isdigit() for each in options)
     if "options" in question.parts and not numbers and d.scene.place != Recall(name):
-        d.scene.thing, d.scene.thing_last = (
-            Thing(Recall(name)),
-            False,
+        d.scene = replace(
+            d.scene, thing=Thing(Recall(name)), thing_last=False
         )  # "what they want: tea or coffee"
     offer = bool(question.production.fixed.get("offer"))  # "offer him a coffee"
     having = rest is not None and says_having(d, rest.start)  # "whether they have got a pen"
@@ -267,7 +259,7 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
     if options and last is not None and all(each.isdigit() for each in options):
         what = singular(d.noun_words(last + 1, rest.end), d.language)
         if what:  # "one, two or three boxes"
-            d.scene.thing, d.scene.thing_last = Thing(Text(what)), False
+            d.scene = replace(d.scene, thing=Thing(Text(what)), thing_last=False)
         return
     if len(options) > 1 and not question.production.fixed.get("where"):
         yes_no = options == (d.language.phrase("yes"), d.language.phrase("no"))
@@ -277,12 +269,12 @@ def offered(d: Discourse, question: Node, options: tuple[str, ...], name: str) -
         while start < end - 1 and d.tokens[start].norm in little:
             start, _ = without_little_words(d, start + 1, end)  # "still need their computer"
         if not yes_no and d.scene.place != Recall(name):
-            d.scene.thing, d.scene.thing_last = Thing(Recall(name)), False
+            d.scene = replace(d.scene, thing=Thing(Recall(name)), thing_last=False)
         elif yes_no and not names_people(d, start, end):
-            d.scene.thing = asked_about(d, start, end)
-            d.scene.thing_last = False
-            if d.scene.thing is not None and isinstance(d.scene.thing.value, Text):
-                asks_who_has(d, question, d.scene.thing.value)
+            it = asked_about(d, start, end)
+            d.scene = replace(d.scene, thing=it, thing_last=False)
+            if it is not None and isinstance(it.value, Text):
+                asks_who_has(d, question, it.value)
 
 
 def sought_after(d: Discourse, question: Node) -> Thing | None:

@@ -33,7 +33,7 @@ def answer_named(d: Discourse, node: Node) -> Told:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     value = answer_to(d, survey)
-    d.command.resolved.update(range(part.start, part.end))
+    d.resolves(range(part.start, part.end))
     if value is None:
         return polled(d, "answers", None)
     return Told([Call("say", {"text": value})], [])
@@ -43,7 +43,7 @@ def survey_named(d: Discourse, start: int, end: int) -> Survey | None:
     """The question whose answer a noun speaks of; the last one, if of several."""
     words = d.norms(start, end)
     noun = singular(words[-1], d.language)
-    surveys: list[Survey] = d.answers.surveys
+    surveys: tuple[Survey, ...] = d.answers.surveys
     return next((each for each in reversed(surveys) if noun in each.nouns), None)
 
 
@@ -109,13 +109,11 @@ def _kinds(d: Discourse, options: tuple[str, ...]) -> Iterator[str]:
 
 def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
     """A text made of some words, with the answers in it that these words speak of."""
-    if d.rounds.round.such is not None and d.norms(end - 1, end)[0] in d.language.speech.get(
-        "there", ()
-    ):
+    if d.round.such is not None and d.norms(end - 1, end)[0] in d.language.speech.get("there", ()):
         # "find an empty office and tell Bob to meet me there": he has to hear which one it is
         words = text.rstrip(".!")
         end_of_it = (Text(text[len(words) :]),) if text != words else ()
-        return Sentence((Text(f"{words}: "), Recall(d.rounds.round.such), *end_of_it))
+        return Sentence((Text(f"{words}: "), Recall(d.round.such), *end_of_it))
     parts: list[Value] = []
     rest = text
     for first, last, value in list(_spoken_of(d, start, end)):
@@ -131,7 +129,7 @@ def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
             parts.append(Text(before))
         parts.append(value)
         rest = rest[found.end() :]
-        d.command.resolved.update(range(first, last))
+        d.resolves(range(first, last))
     if not parts:
         return Text(text)
     if rest:

@@ -50,13 +50,13 @@ def remark(d: Discourse, node: Node) -> Steps:
             with contextlib.suppress(NotUnderstood):  # it may speak of what nobody knows
                 d.build(part)
                 if node.production.fixed.get("coming") and d.scene.person is not None:
-                    d.scene.person = expected(d.scene.person)
+                    d.scene = replace(d.scene, person=expected(d.scene.person))
     named = people_named(d, node.start, node.end)
     if len(named) == 1:  # "a letter came for Bob"
-        d.scene.person, d.scene.thing_last = Thing(Text(named[0]), person=True, known=True), False
+        d.scene = d.scene.speaking_of_person(Thing(Text(named[0]), person=True, known=True))
     if not node.production.fixed.get("own"):
-        d.reports.last = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
-        d.reports.step = None
+        told = Report("only", Text(sentence_form(_said(d, node))), about_here=False)
+        d.reports = replace(d.reports, last=told, step=None)
     return aside(d, node)
 
 
@@ -81,7 +81,7 @@ def aside(d: Discourse, node: Node) -> Steps:
     if asked and not node.production.fixed.get("own"):
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
-    d.background.append(_said(d, node))
+    d.background += (_said(d, node),)
     return []
 
 
@@ -112,8 +112,8 @@ def remark_thing(d: Discourse, node: Node) -> Steps:
     """ "somebody lost a scarf": what, and who, is spoken of then."""
     d.get(node, "person_ref")
     thing: Thing = d.get(node, "thing")
-    d.scene.thing, d.scene.thing_last = thing, True
-    d.deliveries.mislaid = thing.value
+    d.scene = d.scene.speaking_of(thing)
+    d.deliveries = replace(d.deliveries, mislaid=thing.value)
     return aside(d, node)
 
 
@@ -124,8 +124,8 @@ def remark_where(d: Discourse, node: Node) -> Steps:
     person: Thing | list[Thing] | None = d.build(who_is) if who_is is not None else None
     crowd = d.scene.person is not None and d.scene.person.plural and d.scene.person.group is None
     if person is None and crowd and d.gender(node.start, node.start + 2) and d.people.last_named:
-        d.scene.person = (
-            d.people.last_named
+        d.scene = replace(
+            d.scene, person=d.people.last_named
         )  # "tell Ada how many visitors are in the lobby, she is in ..."
     spot: Where = d.get(node, "where")  # "Alice is in her office": after her
     place = spot.place
@@ -143,22 +143,19 @@ def remark_where(d: Discourse, node: Node) -> Steps:
         it = True  # "hol mir meine Brille, sie ist im Büro": no word for whoever says so
     who = person or (d.scene.person if thing is None and not it else None)
     if thing is None and who is not None:
-        d.scene.person, d.scene.thing_last = (
-            replace(who, place=place, furniture=spot.furniture),
-            False,
-        )
-        d.scene.with_person = None
+        d.scene = d.scene.speaking_of_person(replace(who, place=place, furniture=spot.furniture))
+        d.scene = replace(d.scene, with_person=None)
         known_to_be(d, who.value, place)
         fetched_there(d, who, place)
     else:
         what = thing or d.scene.thing
         if isinstance(what, Thing):  # of several, each is where it is
-            there = replace(what, place=place, furniture=spot.furniture)
-            d.scene.thing, d.scene.thing_last = all_there_are(there), True
-            told_where(d, d.scene.thing)
+            there = all_there_are(replace(what, place=place, furniture=spot.furniture))
+            d.scene = d.scene.speaking_of(there)
+            told_where(d, there)
             known_to_be(d, what.value, place)
     if place is not None:
-        d.whereabouts.append((_said(d, node), place))
+        d.whereabouts += ((_said(d, node), place),)
     return aside(d, node)
 
 
@@ -167,9 +164,9 @@ def remark_lacking(d: Discourse, node: Node) -> Steps:
     """ "there is no whiteboard in lecture hall 2": one that is brought then goes there."""
     thing: Thing = d.get(node, "thing")
     spot: Where = d.get(node, "where") or Where(d.get(node, "place"))
-    d.scene.thing, d.scene.thing_last = replace(thing, place=None, furniture=None), True
-    d.scene.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
-    d.scene.place = spot.place
+    d.scene = d.scene.speaking_of(replace(thing, place=None, furniture=None))
+    d.scene = replace(d.scene, lacking=replace(thing, place=spot.place, furniture=spot.furniture))
+    d.scene = replace(d.scene, place=spot.place)
     return aside(d, node)
 
 

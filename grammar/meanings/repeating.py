@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, as_value
@@ -117,7 +118,9 @@ def done_with(d: Discourse, before: Value, person: Value) -> Steps:
     lost = unknown_places(d, steps)
     if lost:
         raise NotUnderstood(d.language.phrase("unknown_place", name=lost[0]))
-    d.scene.with_person = person if d.scene.with_person == before else d.scene.with_person
+    d.scene = replace(
+        d.scene, with_person=person if d.scene.with_person == before else d.scene.with_person
+    )
     return steps
 
 
@@ -165,7 +168,7 @@ def same_at(d: Discourse, node: Node) -> Steps:
             for step in done_at(d, steps, old, place)
         ]
     variable = d.variable("place")
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     body = tuple(replaced(step, old, Recall(variable)) for step in steps)
     return [ForEach(variable, kind_places(d, kinds), body)]
 
@@ -173,14 +176,14 @@ def same_at(d: Discourse, node: Node) -> Steps:
 def done_at(d: Discourse, steps: Steps, old: Text, place: Value) -> Steps:
     """The steps at one place once more at another; with whoever works there, where they were with
     whoever works at the one."""
-    d.scene.place = old
+    d.scene = replace(d.scene, place=old)
     before = owner_of(d)
     d.went(place)
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     person = owner_of(d)
     if before is not None and person is not None and mentions(tuple(steps), before):
         steps = [replaced(step, before, person) for step in steps]
-        d.scene.person, d.scene.thing_last = Thing(person, known=True, person=True), False
+        d.scene = d.scene.speaking_of_person(Thing(person, known=True, person=True))
     return [replaced(step, old, place) for step in steps]
 
 

@@ -74,8 +74,9 @@ def gone_to_tell(d: Discourse, person: Thing) -> Thing:
         return person
     assert isinstance(before, Call)
     d.done.pop()
-    own, d.scene.at = d.scene.at, before.arguments["place"]
-    d.scene.place = d.scene.at
+    own = d.scene.at
+    d.scene = replace(d.scene, at=before.arguments["place"])
+    d.scene = replace(d.scene, place=d.scene.at)
     return replace(person, place=own)
 
 
@@ -91,7 +92,7 @@ def found_for(d: Discourse, person: Thing | None, found: Steps) -> Steps:
 
     def told_there(steps: tuple[Step, ...]) -> tuple[Step, ...]:
         at = steps.index(BACK)
-        d.scene.at = d.scene.with_person = None
+        d.scene = d.scene.wandered()
         return (*steps[:at], *speak_to(d, person, list(steps[at + 1 :])))
 
     then, otherwise = told_there(search.then), told_there(search.otherwise)
@@ -103,7 +104,7 @@ def told_in_total(d: Discourse, found: Report, person: Thing | None) -> Steps:
     known = d.reports.last is not None and d.reports.last.name == "count"
     counted = known and any(each is d.reports.step for each in nodes(tuple(d.done)))
     steps = [] if counted else told(d, replace(found, place=None), None)
-    d.reports.after_round = (person, "total")
+    d.reports = replace(d.reports, after_round=(person, "total"))
     return steps
 
 
@@ -114,7 +115,7 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
         return []  # "check who is there and tell me their names"
     if found is d.reports.asked and not asked_by_me and d.done and d.done[-1] is d.reports.step:
         return retold(d, person)  # "see what is on the desk and tell Alex what is there"
-    d.reports.asked = found
+    d.reports = replace(d.reports, asked=found)
     if asked_by_me:
         not_yet_back(d, found)
     steps: Steps = []
@@ -128,7 +129,7 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
         back
         and asked_by_me
         and d.scene.at is not None
-        and not d.rounds.in_loop
+        and not d.loops.in_loop
         and found.about_here
         and found.value is not None
     ):
@@ -145,12 +146,14 @@ def found_out(d: Discourse, found: Report, person: Thing | None, *, back: bool) 
     seen_here = found.about_here and found.value is not None
     if back and asked_by_me and seen_here and in_round(d):
         steps += told(d, found, None)
-        d.reports.after_round = (None, "each")
+        d.reports = replace(d.reports, after_round=(None, "each"))
         return steps
     far = person is not None and not is_here(d, person) and found.about_here
     if far and seen_here and in_round(d) and person is not None and person.known:
         steps += told(d, found, None)
-        d.reports.after_round = (person, "each")  # they are told when all places have been seen
+        d.reports = replace(
+            d.reports, after_round=(person, "each")
+        )  # they are told when all places have been seen
         return steps
     if far and found.value is not None and not isinstance(found.value, Recall):
         name = d.variable(found.name)
@@ -182,8 +185,9 @@ def not_yet_back(d: Discourse, found: Report) -> None:
 def told(d: Discourse, found: Report, person: Thing | None) -> Steps:
     """Say it."""
     saying = saying_of(d, found)
-    d.reports.last, d.reports.step = found, saying
-    d.answers.last = d.reports.news = d.reports.counted = d.reports.checked = None
+    d.reports = replace(d.reports, last=found, step=saying)
+    d.answers = replace(d.answers, last=None)
+    d.reports = replace(d.reports, news=None, counted=None, checked=None)
     return speak_to(d, person, [saying])
 
 
@@ -235,7 +239,7 @@ def known_words(d: Discourse) -> Steps:
 def retold(d: Discourse, person: Thing | None) -> Steps:
     """Tell the last report to somebody else, or somewhere else."""
     found: Report = d.reports.last
-    d.reports.counts = d.reports.counts and (person is None or is_me(person))
+    d.reports = replace(d.reports, counts=d.reports.counts and (person is None or is_me(person)))
     at = next((at for at, step in enumerate(d.done) if step is d.reports.step), None)
     if at is not None and not isinstance(found.value, Recall) and found.value is not None:
         name = d.variable(found.name)
@@ -245,7 +249,7 @@ def retold(d: Discourse, person: Thing | None) -> Steps:
         d.done.pop()  # it is told to them and not to the speaker
         if d.done and d.done[-1] == Call("goto", {"place": Recall(START)}):
             d.done.pop()
-            d.scene.at = found.place
+            d.scene = replace(d.scene, at=found.place)
     elif at is not None and d.reports.open and not (person is None or is_me(person)):
         del d.done[at]  # nobody else was to be told on the way to them
         if at and d.done[at - 1] == BACK:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final, TypeGuard
 
-from msgspec.structs import replace
+from msgspec.structs import replace as structs_replace
 
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.meanings.finding import not_found
@@ -36,9 +36,9 @@ STOP: Final = Call("stop")
 def ended_there(d: Discourse, looking: Steps, condition: Condition) -> Steps | None:
     """The steps that end the round around them, the round before them, or the search before them,
     where something is so; None if nothing of the kind goes on."""
-    if d.rounds.in_loop:
+    if d.loops.in_loop:
         return [*looking, _ending(condition)]
-    lookout = d.rounds.round.lookout
+    lookout = d.round.lookout
     if lookout is not None and is_sight(condition):
         lookout.until_found(d)
         return []
@@ -56,7 +56,7 @@ def ended_there(d: Discourse, looking: Steps, condition: Condition) -> Steps | N
 
 def round_until(loop: ForEach, looking: Sequence[Step], condition: Condition) -> Steps:
     """A round that ends at the first place where something is so."""
-    return [replace(loop, steps=(*loop.steps, *looking, _ending(condition)))]
+    return [structs_replace(loop, steps=(*loop.steps, *looking, _ending(condition)))]
 
 
 def _ending(condition: Condition) -> If:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace as replace_thing
+from dataclasses import replace
 
-from msgspec.structs import replace
+from msgspec.structs import replace as structs_replace
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
@@ -62,13 +62,13 @@ def brought_back(d: Discourse, node: Node, told: Told) -> Steps:
     """The report, told to who asked for it, or to somebody else."""
     person: Thing | None = d.get(node, "whom")
     d.done.extend(told.first)
-    d.scene.at = None
-    d.reports.news = News(told.words, person is None)
+    d.scene = replace(d.scene, at=None)
+    d.reports = replace(d.reports, news=News(told.words, person is None))
     if person is not None and not is_me(person):
         return speak_to(d, person, told.words)
     start = d.start()
     d.went(start)
-    d.reports.told = told.words[-1]
+    d.reports = replace(d.reports, told=told.words[-1])
     return [Call("goto", {"place": start}), *told.words]
 
 
@@ -84,7 +84,7 @@ def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     if kind == "total" and d.reports.counted is None and numbers_asked(d):
         return polled(d, "sum", None)  # "ask them how many they need, and tell me the total"
     if d.reports.counted is None:
-        d.reports.counted = _counting(d, thing)
+        d.reports = replace(d.reports, counted=_counting(d, thing))
     elif d.reports.news is not None:
         take_back(
             d, d.reports.news
@@ -92,7 +92,7 @@ def summed_up(d: Discourse, kind: str, thing: Thing | None = None) -> Told:
     counting, place, things = d.reports.counted
     first, notes, told = _kept(d, kind, counting.name, place, things)
     note(d, counting, notes, first)
-    d.reports.last = None
+    d.reports = replace(d.reports, last=None)
     return Told(told, [])
 
 
@@ -119,7 +119,7 @@ def _counting(d: Discourse, thing: Thing | None) -> tuple[Remember, Recall, str]
             return counting, here, dict(found.words)["things"]
         if thing is not None and loop.steps and goes_to(loop.steps[0], loop.variable):
             counting = Remember(d.variable("count"), Ask("count", {"thing": sought(d, thing)}))
-            d.done[at] = replace(loop, steps=(*loop.steps, counting))
+            d.done[at] = structs_replace(loop, steps=(*loop.steps, counting))
             return counting, here, things_called(d, thing)
     raise NotUnderstood(d.language.phrase("count_what"))
 
@@ -128,7 +128,8 @@ def told_after_round(d: Discourse, loop: ForEach) -> Steps:
     """A round, and what was found out in it told behind it."""
     if d.reports.after_round is None:
         return [loop]
-    (person, kind), d.reports.after_round = d.reports.after_round, None
+    (person, kind) = d.reports.after_round
+    d.reports = replace(d.reports, after_round=None)
     if not _holds(
         loop, d.reports.step
     ):  # "..., and if it is missing, bring one": that is done instead
@@ -138,7 +139,7 @@ def told_after_round(d: Discourse, loop: ForEach) -> Steps:
         words, steps = summed_up(d, kind).words, [d.done.pop()]
     else:
         words, steps = _lines(d, loop)
-    d.reports.last, d.reports.news, d.reports.told = None, News(words, person is None), words[-1]
+    d.reports = replace(d.reports, last=None, news=News(words, person is None), told=words[-1])
     if person is None or is_me(person):
         return [*steps, *go_back(d, steps), *words]
     return [*steps, *speak_to(d, person, words)]
@@ -152,14 +153,14 @@ def found_on_round(d: Discourse, found: Report) -> Told | None:
     if loop is None or not seen or found.before:
         return None
     saying = saying_of(d, found)
-    d.reports.last, d.reports.step = found, saying
-    loop = replace(loop, steps=(*loop.steps, saying))
+    d.reports = replace(d.reports, last=found, step=saying)
+    loop = structs_replace(loop, steps=(*loop.steps, saying))
     d.done.pop()
     if found.name == "count":
         d.done.append(loop)
         return summed_up(d, "each")
     words, steps = _lines(d, loop)
-    d.reports.last = None
+    d.reports = replace(d.reports, last=None)
     d.done += steps
     return Told(words, [])
 
@@ -220,20 +221,20 @@ def _kept(
     if kind == "most":
         none_there = Compare(Recall(most), "==", Number(0))
     told = If(none_there, (none,), (some,))
-    d.scene.place = Recall(best)
+    d.scene = replace(d.scene, place=Recall(best))
     return [Remember(most, Number(0)), Remember(best, Text(""))], [kept], [told]
 
 
 def best_counted(d: Discourse, most: bool) -> Recall:
     """ "count the people in each lab and go to the one with the most": of the last round."""
     if d.reports.counted is None:
-        d.reports.counted = _counting(d, None)
+        d.reports = replace(d.reports, counted=_counting(d, None))
     elif d.reports.news is not None:
         take_back(d, d.reports.news)
     counting, place, things = d.reports.counted
     first, notes, _ = _kept(d, "most" if most else "fewest", counting.name, place, things)
     note(d, counting, notes, first)
-    d.reports.last = None
+    d.reports = replace(d.reports, last=None)
     assert isinstance(d.scene.place, Recall)
     return d.scene.place
 
@@ -244,7 +245,7 @@ def round_count(d: Discourse, node: Node) -> Steps:
     found, best = counted_around(d, node), d.scene.place
     steps = brought_back(d, node, found)
     if str(node.production.fixed["kind"]) in ("most", "fewest"):  # "go there"
-        d.scene.place = best
+        d.scene = replace(d.scene, place=best)
     return steps
 
 
@@ -258,11 +259,15 @@ def around(d: Discourse, kind: str, thing: Thing, places: Value) -> Told:
     place, count = d.variable("place"), d.variable("count")
     first, notes, told = _kept(d, kind, count, Recall(place), things_called(d, thing))
     counting = Remember(count, Ask("count", {"thing": sought(d, thing)}))
-    d.reports.counted = (counting, Recall(place), things_called(d, thing))
+    d.reports = replace(d.reports, counted=(counting, Recall(place), things_called(d, thing)))
     d.done += [*first, round_of(d, places, [counting, *notes], place)]
     if thing.person and kind in ("most", "fewest"):  # "which lab has most people? Tell them ..."
-        d.scene.person = replace_thing(thing, place=d.scene.place, plural=True, here=False)
-        d.scene.with_person, d.scene.thing_last = None, False
+        d.scene = replace(
+            d.scene,
+            person=replace(thing, place=d.scene.place, plural=True, here=False),
+            with_person=None,
+            thing_last=False,
+        )
     return Told(told, [])
 
 
@@ -274,8 +279,8 @@ def places_told(d: Discourse, node: Node) -> Told:
     """ "which labs have no stapler", "how many offices are empty", "which of them are"."""
     named = any(name in node.parts for name in ("kinds", "place_list"))
     named = named or bool(node.production.fixed.get("all"))
-    if d.rounds.round.such is not None and not named and last_round(d) is not None:
-        return Told([d.say("it_is_there", place=Recall(d.rounds.round.such))], [])
+    if d.round.such is not None and not named and last_round(d) is not None:
+        return Told([d.say("it_is_there", place=Recall(d.round.such))], [])
     trait_part = node.parts["place_trait"]
     tell = str(node.production.fixed.get("tell", "which"))
     of_them = "many" if tell == "many" else "who"
@@ -295,7 +300,7 @@ def places_told(d: Discourse, node: Node) -> Told:
         return polled(d, of_them, Said(trait_part.start, trait_part.end))
     if d.reports.news is not None:  # what was checked on the round is told only as is said now
         take_back(d, d.reports.news)
-    d.rounds.round.lookout = None
+    d.round = replace(d.round, lookout=None)
     at = last_round(d)
     if named and at is None and same_places(d, node, looked_over(d)):
         at = round_of_visits(d)
@@ -308,9 +313,10 @@ def places_told(d: Discourse, node: Node) -> Told:
         return told_where(d, None if sought_for.denied else sought_for.thing)
     loop = None if at is None else d.done[at]
     place = loop.variable if isinstance(loop, ForEach) else d.variable("place")
-    before, d.scene.at = d.scene.at, Recall(place)
+    before = d.scene.at
+    d.scene = replace(d.scene, at=Recall(place))
     trait: Trait = d.get(node, "place_trait")
-    d.scene.at = before
+    d.scene = replace(d.scene, at=before)
     found = d.variable("found")
     told_of = trait.condition
     if node.production.fixed.get("as_it_is"):  # "are all labs empty?": where they are not is told
@@ -321,7 +327,7 @@ def places_told(d: Discourse, node: Node) -> Told:
     going: Steps = [Remember(found, Items(()))]
     if at is not None and isinstance(loop, ForEach):
         loop = without_check(d, loop)
-        d.done[at] = replace(loop, steps=(*loop.steps, *trait.first, noted))
+        d.done[at] = structs_replace(loop, steps=(*loop.steps, *trait.first, noted))
         d.done.insert(0, going.pop())
         if rest:
             d.done.insert(0, Remember(others, Items(())))
@@ -344,7 +350,7 @@ def without_check(d: Discourse, loop: ForEach) -> ForEach:
     if found is None or found.otherwise is None or not _holds(loop, d.reports.step):
         return loop
     less: ForEach = replacing(loop, d.reports.step, [])
-    d.reports.last = None
+    d.reports = replace(d.reports, last=None)
     return less
 
 
@@ -444,5 +450,6 @@ def nth_place(d: Discourse, node: Node) -> Value:
             tuple(each.name for each in places[:3]),
             (node.start, node.end),
         )
-    d.scene.place = Text(places[number - 1 if number > 0 else number].name)
-    return d.scene.place
+    place = Text(places[number - 1 if number > 0 else number].name)
+    d.scene = replace(d.scene, place=place)
+    return place

@@ -118,8 +118,8 @@ def just_awaited(d: Discourse, thing: Thing) -> Condition | None:
     if last.arguments["thing"] != thing.value or thing.place not in (None, d.scene.at):
         return None
     d.done.pop()
-    d.scene.looked_in = (
-        d.scene.at
+    d.scene = replace(
+        d.scene, looked_in=d.scene.at
     )  # others are not looked for just there: "if he does not come, tell Alice"
     return Holds(Ask("wait_for", last.arguments))
 

@@ -23,9 +23,9 @@ def sent_to(d: Discourse, person: Thing | None) -> Thing | None:
     elif own is None or d.done[-1] != Call("goto", {"place": own}):
         return None
     d.done.pop()
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     later = replace(person, here=False, pronoun=False, place=own)
-    d.scene.person, d.scene.thing_last = later, False
+    d.scene = d.scene.speaking_of_person(later)
     return later
 
 
@@ -46,7 +46,7 @@ def searched_before(d: Discourse, node: Node) -> tuple[Thing, Thing] | None:
     receiver = sent_to(d, d.scene.person)
     if receiver is None:
         return None
-    d.scene.thing_last = not looked.person
+    d.scene = replace(d.scene, thing_last=not looked.person)
     return looked, receiver
 
 

@@ -41,10 +41,10 @@ from grammar.plan import (
 
 def over_places(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     place = Recall(d.variable("place"))
-    d.scene.at = None
-    d.rounds.loops[place.name] = places
+    d.scene = replace(d.scene, at=None)
+    d.loops = replace(d.loops, places={**d.loops.places, place.name: places})
     body = round_of_steps(d, lambda: one(place))
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     return until_found(d, place, places, body) or [
         ForEach(place.name, places, tuple(another_one(d, body)))
     ]
@@ -60,8 +60,11 @@ def until_found(d: Discourse, place: Recall, places: Value, body: Steps) -> Step
     known = named_places(d, places)
     thing = d.scene.thing if d.scene.thing_last else d.scene.person
     if known is not None and thing is not None:
-        d.scene.thing, d.scene.person = (
-            replace(each, place=None) if each else each for each in (d.scene.thing, d.scene.person)
+        it, them = d.scene.thing, d.scene.person
+        d.scene = replace(
+            d.scene,
+            thing=it and replace(it, place=None),
+            person=them and replace(them, place=None),
         )
         return search_in(d, replace(thing, place=None), known)
     missing = first.then
@@ -82,7 +85,7 @@ def over_either_place(d: Discourse, node: Node, places: list[Value], one: One) -
         return by_choice(d, chosen, places, one)
     looked: Value | None = None
     for place in places:
-        d.scene.at = None
+        d.scene = replace(d.scene, at=None)
         search = d.sequence(lambda p=place: d.done.extend(one(p)))  # type: ignore[misc]
         first = search[0] if len(search) == 1 else None
         if not (isinstance(first, Call) and first.method == "find"):
@@ -98,39 +101,44 @@ def over_any_place(d: Discourse, node: Node, places: Value, one: One) -> Steps:
     if isinstance(places, Text):
         return one(places)
     place = Recall(d.variable("place"))
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     return [Remember(place.name, Choice(places)), *one(place)]
 
 
 def over_place_best(d: Discourse, node: Node, best: Best, one: One) -> Steps:
     """ "the office with the fewest people": gone round for first."""
     going, place = survey(d, best)
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     return [*going, *one(place)]
 
 
 def over_place_such(d: Discourse, node: Node, such: Such, one: One) -> Steps:
     """ "an empty office": the first that is; if none is, that is said."""
     going, place, none = first_such(d, such)
-    d.scene.place = place
+    d.scene = replace(d.scene, place=place)
     return [*going, If(none, (d.say("no_such_places"),), tuple(guard_finds(d, one(place))))]
 
 
 def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     """ "where Bob is": he is looked for, and that is the place."""
-    spoken_of = d.scene.thing, d.scene.thing_last
+    before = d.scene
     behind_it = stands_behind_it(d, node)
     held = d.scene.holding is not None
     searching = look_for(d, thing)
     place = Recall(d.variable("place"))
-    d.scene.at = d.scene.place = place
+    d.scene = d.scene.arrived(place)
     if behind_it:
-        d.scene.thing, d.scene.thing_last = spoken_of
-        d.scene.at = place if held else None
-    outer, d.rounds.at_people = d.rounds.at_people, True  # what is brought there need not be there
+        d.scene = replace(
+            d.scene,
+            thing=before.thing,
+            thing_last=before.thing_last,
+            at=place if held else None,
+        )
+    outer = d.loops.at_people
+    d.loops = replace(d.loops, at_people=True)  # what is brought there need not be there
     body = one(place)
-    d.rounds.at_people = outer
-    it = spoken_of[0] if behind_it else None
+    d.loops = replace(d.loops, at_people=outer)
+    it = before.thing if behind_it else None
     if it is not None and body[:1] == [Call("grab", {"thing": it.value})]:
         if (
             searched(d.done[-1] if d.done else None) is not None

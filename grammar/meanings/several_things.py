@@ -69,8 +69,8 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     if thing.count is None:  # "them" are all of them
         thing = replace(thing, every=True)
 
-    d.scene.at = None if thing.count is not None else thing.place
-    d.scene.thing, d.scene.thing_last = single, True
+    d.scene = replace(d.scene, at=None if thing.count is not None else thing.place)
+    d.scene = d.scene.speaking_of(single)
     body = round_of_steps(
         d, lambda: one(single if d.scene.at is None else replace(single, here=True))
     )
@@ -78,21 +78,21 @@ def over_things(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
         return []
     if thing.here and thing.count is not None and thing.place is None and not is_grab(body):
         back = Call("goto", {"place": d.start()})  # "these two cups": the second is here, too
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
         return [Repeat(Number(thing.count), (back, *body))]
     if is_grab(body):  # "collect the cups": where to is said next
-        d.deliveries.collected, d.scene.thing, d.scene.thing_last = thing, thing, True
-        d.scene.at = at
+        d.deliveries = replace(d.deliveries, collected=thing)
+        d.scene = replace(d.scene.speaking_of(thing), at=at)
         return []
-    d.deliveries.collected = None
+    d.deliveries = replace(d.deliveries, collected=None)
     if moves_nothing(body):
         raise NotUnderstood(d.language.phrase("one_thing"))
     steps = rounds(d, node, thing, single, body)
     if d.scene.delivered is not None:
-        d.deliveries.delivered_in = steps[-1]
+        d.deliveries = replace(d.deliveries, delivered_in=steps[-1])
     if around is not None:
         steps = [structs.replace(around, steps=(*around.steps[:-1], *steps))]
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = d.scene.speaking_of(thing)
     return steps
 
 
@@ -120,10 +120,10 @@ def put_more_exactly(d: Discourse, node: Node) -> bool:
         return False
     if last.method != "put":  # and not only fetched
         return False
-    scene = d.scene.copy()
+    scene = d.scene
     spot: Where = d.build(where)
     if spot.place or not spot.furniture:
-        d.scene = scene.copy()
+        d.scene = scene
         return False
     there = structs.replace(last, arguments={**last.arguments, "where": Text(spot.furniture)})
     d.done[-1] = ending(d.done[-1], there)
@@ -200,7 +200,7 @@ def is_search(step: Step) -> bool:
 
 def is_other(d: Discourse, source: Recall, target: Value) -> Condition:
     """Whether a place is none of those that something is brought to."""
-    targets = d.rounds.loops.get(target.name) if isinstance(target, Recall) else None
+    targets = d.loops.places.get(target.name) if isinstance(target, Recall) else None
     if targets is None:
         return Compare(source, "!=", target)
     return Not(Compare(source, "in", targets))
@@ -237,16 +237,13 @@ def take_back(d: Discourse) -> ForEach | None:
     inner = last if around is None else around.steps[-1]
     if d.deliveries.delivered_in is not None and inner is d.deliveries.delivered_in:
         del d.done[at]
-        d.deliveries.delivered_in = d.scene.delivered = None
+        d.deliveries = replace(d.deliveries, delivered_in=None)
+        d.scene = replace(d.scene, delivered=None)
         return around
-    if (
-        d.deliveries.listed_last
-        and d.done[-len(d.deliveries.listed_last) :] == d.deliveries.listed_last
-    ):
-        del d.done[
-            -len(d.deliveries.listed_last) :
-        ]  # "find three cups in the ward and bring them here"
-        d.deliveries.listed_last = []
+    listed = d.deliveries.listed_last
+    if listed and tuple(d.done[-len(listed) :]) == listed:
+        del d.done[-len(listed) :]  # "find three cups in the ward and bring them here"
+        d.deliveries = replace(d.deliveries, listed_last=())
     return None
 
 
@@ -255,7 +252,8 @@ def begun_before(d: Discourse) -> Thing | None:
     several = d.scene.thing if d.scene.thing is not None and d.scene.thing.several else None
     if several is not None:
         take_back(d)
-        d.deliveries.collected = d.scene.holding = None
+        d.deliveries = replace(d.deliveries, collected=None)
+        d.scene = replace(d.scene, holding=None)
     return several
 
 
@@ -294,7 +292,7 @@ def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -
         source = things[-1].place  # "a tea or a coffee from the kitchen": either is from there
         things = [replace(each, place=each.place or source) for each in things]
         steps = by_choice(d, chosen, things, one)
-        d.scene.thing, d.scene.thing_last = Thing(Recall(str(d.answers.last))), True
+        d.scene = d.scene.speaking_of(Thing(Recall(str(d.answers.last))))
         return steps
     # "a tea or a coffee from the kitchen": either is from there, if they are but named
     unplaced = all(each.place is None and each.furniture is None for each in things[:-1])
@@ -306,19 +304,20 @@ def over_either_thing(d: Discourse, node: Node, things: list[Thing], one: One) -
 
 def first_found(d: Discourse, things: list[Thing], one: One) -> Steps:
     """Look for one after the other; the steps are those for the first that is found."""
-    before = (d.scene.at, d.scene.holding, d.scene.with_person, frozenset(d.variables))
+    before, known = d.scene, d.variables
     otherwise: Steps = [not_found(d, things[-1])]
     for thing in reversed(things):
-        d.scene.at, d.scene.holding, d.scene.with_person = before[:3]
-        d.variables.intersection_update(before[3])  # the same names in either branch
-        d.rounds.found_already = True
+        here, held, whom = before.at, before.holding, before.with_person
+        d.scene = replace(d.scene, at=here, holding=held, with_person=whom)
+        d.variables = known  # the same names in either branch
+        d.loops = replace(d.loops, found_already=True)
         body = round_of_steps(d, lambda t=thing: one(replace(t, here=True)))  # type: ignore[misc]
-        d.rounds.found_already = False
+        d.loops = replace(d.loops, found_already=False)
         if not body:
             otherwise = [If(Not(Holds(Ask("find", found(d, thing).arguments))), tuple(otherwise))]
             continue
         otherwise = [
             If(Holds(Ask("find", found(d, thing).arguments)), tuple(body), tuple(otherwise))
         ]
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     return otherwise

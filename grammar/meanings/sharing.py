@@ -47,9 +47,9 @@ def one_there(d: Discourse, node: Node) -> Thing:
     if d.scene.thing is not None and (d.scene.thing_last or d.scene.person is None):
         return one_more(d, node)
     spot: Where = d.get(node, "where")
-    d.scene.person = Thing(Text(ANYONE), person=True, place=spot.place, furniture=spot.furniture)
-    d.scene.thing_last = False
-    return d.scene.person
+    person = Thing(Text(ANYONE), person=True, place=spot.place, furniture=spot.furniture)
+    d.scene = d.scene.speaking_of_person(person)
+    return person
 
 
 @meaning("several_of")
@@ -104,9 +104,9 @@ def lacking_there(d: Discourse, node: Node) -> Steps:
     """ "two chairs are missing in the lab": what is brought next is for there."""
     spot: Where = d.get(node, "where")
     thing: Thing = d.get(node, "thing")
-    d.scene.thing, d.scene.thing_last = thing, True
-    d.scene.lacking = replace(thing, place=spot.place, furniture=spot.furniture)
-    d.background.append(d.words(node.start, node.end))
+    d.scene = d.scene.speaking_of(thing)
+    d.scene = replace(d.scene, lacking=replace(thing, place=spot.place, furniture=spot.furniture))
+    d.background += (d.words(node.start, node.end),)
     return []
 
 
@@ -142,7 +142,9 @@ def shared_out(
             place = source_in(d, steps, thing)  # and not where the share before was put
             thing = replace(thing, place=place)
         if thing.place is None:
-            d.scene.at = None  # nobody says that it is where the share before was brought to
+            d.scene = replace(
+                d.scene, at=None
+            )  # nobody says that it is where the share before was brought to
         steps += d.sequence(partial(hand_out, d, thing, each))
     return steps
 

@@ -64,7 +64,10 @@ def names_here(d: Discourse, node: Node) -> Report | Steps:
     if person is None:
         person = described(d, ANYONE, node)
         away = person.place is not None
-        d.scene.person = Thing(Text(ANYONE), person.place, person=True, plural=True, here=not away)
+        d.scene = replace(
+            d.scene,
+            person=Thing(Text(ANYONE), person.place, person=True, plural=True, here=not away),
+        )
     elif "mods" in node.parts and not person.known:  # "the man's name in the bedroom"
         person = replace(person, place=described(d, "", node).place or person.place)
     elif "mods_after" in node.parts and not person.known:  # "which man in the hall is waving"
@@ -106,9 +109,10 @@ def who_came(d: Discourse, node: Node) -> Report:
     """ "who has come"; "there is somebody in the hall, see who it is"."""
     come = who_has_come(d)
     if come is None and d.scene.person is not None and d.scene.person.place is not None:
-        d.scene.person = replace(d.scene.person, pronoun=False)
-        look = Ask("describe", {"thing": sought(d, d.scene.person)})
-        return Report("only", look, d.scene.person.place, name="description")
+        person = replace(d.scene.person, pronoun=False)
+        d.scene = replace(d.scene, person=person)
+        look = Ask("describe", {"thing": sought(d, person)})
+        return Report("only", look, person.place, name="description")
     if come is None:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
@@ -173,10 +177,7 @@ def one_there(d: Discourse, node: Node) -> Report:
         found = whatever_there(d, thing, every)
     else:
         found = best_there(d, thing)
-        d.scene.thing, d.scene.thing_last = (
-            replace(thing, noun=noun, here=thing.place is None),
-            True,
-        )
+        d.scene = d.scene.speaking_of(replace(thing, noun=noun, here=thing.place is None))
     return found
 
 
@@ -197,7 +198,7 @@ def things_on(d: Discourse, place: Thing) -> Report:
 def whatever_there(d: Discourse, thing: Thing, every: Thing) -> Report:
     """All things that are as one and "every" one is said to be, or that there is nothing. What is
     there is "it" then."""
-    d.scene.thing, d.scene.thing_last = replace(thing, here=thing.place is None), True
+    d.scene = d.scene.speaking_of(replace(thing, here=thing.place is None))
     one, everything = sought(d, thing), sought(d, every)
     assert isinstance(one, Text)
     where = d.called(one.value.removeprefix(d.language.phrase("objects")).strip())
@@ -281,7 +282,7 @@ def best_of(d: Discourse, node: Node) -> Report:
             thing, place=thing.place or more.place, furniture=thing.furniture or more.furniture
         )
     found = best_there(d, thing)
-    d.scene.thing, d.scene.thing_last = replace(thing, here=thing.place is None), True
+    d.scene = d.scene.speaking_of(replace(thing, here=thing.place is None))
     return found
 
 
@@ -322,13 +323,15 @@ def counted_info(d: Discourse, node: Node) -> Report | Steps:
         thing = replace(
             thing, place=d.reports.last_counted.place
         )  # of those who were counted there
-    d.reports.last_counted = thing
+    d.reports = replace(d.reports, last_counted=thing)
     if not thing.person:
-        d.scene.thing = replace(thing, plural=True)  # "..., and which one is the smallest"
+        d.scene = replace(
+            d.scene, thing=replace(thing, plural=True)
+        )  # "..., and which one is the smallest"
     if thing.person and d.scene.person is not None:
         there = d.scene.person.place or thing.place
-        d.scene.person = replace(
-            d.scene.person, plural=True, place=there
+        d.scene = replace(
+            d.scene, person=replace(d.scene.person, plural=True, place=there)
         )  # who are counted are several
     return count_report(d, thing)
 

@@ -31,8 +31,9 @@ def get_signed(d: Discourse, node: Node) -> Steps:
     arguments: dict[str, Value] = {"question": d.sentence(phrase)}
     if person.known:
         arguments["person"] = person.value
-    d.scene.person, d.deliveries.shown, d.scene.holding = person, thing.value, thing.value
-    d.scene.thing, d.scene.thing_last = replace(thing, pronoun=True, place=None), True
+    d.scene = replace(d.scene, person=person, holding=thing.value)
+    d.deliveries = replace(d.deliveries, shown=thing.value)
+    d.scene = d.scene.speaking_of(replace(thing, pronoun=True, place=None))
     return [*steps, Call("ask", arguments)]
 
 

@@ -5,7 +5,7 @@ on."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from grammar.chart import Node
@@ -62,17 +62,14 @@ def at_none(d: Discourse, node: Node) -> Condition | None:
 
 def so_in(d: Discourse, node: Node, how: str) -> Condition:
     such = sought_place(d, node)
-    if how == "some" and not d.rounds.round.told_of:
+    if how == "some" and not d.round.told_of:
         return one_such(d, such)
     found = d.variable("found")
     so = such.trait.condition if how != "all" else negated(such.trait.condition)
     noted = If(so, (Collect(found, Recall(such.variable)),))
-    d.command.pending += [
-        Remember(found, Items(())),
-        round_of(d, such.places, [*such.trait.first, noted], such.variable),
-    ]
-    d.scene.at = d.scene.with_person = None
-    d.scene.away = True
+    going = round_of(d, such.places, [*such.trait.first, noted], such.variable)
+    d.first_of_all(Remember(found, Items(())), going)
+    d.scene = replace(d.scene.wandered(), away=True)
     condition = enough(d, node, how, Length(Recall(found)), such.places)
     named = d.say("such_places", places=Recall(found))
     yes, no = named, d.say("no_such_places")
@@ -82,29 +79,29 @@ def so_in(d: Discourse, node: Node, how: str) -> Condition:
         yes, no = no, yes
     elif how != "some":
         no = d.say("so_many_places", number=Length(Recall(found)))
-    d.rounds.round.claims = Claims(condition, yes, no)
-    d.branch.met = None
+    claims = Claims(condition, yes, no)
+    d.round = replace(d.round, claims=claims)
+    d.branch = replace(d.branch, met=None)
     return condition
 
 
 def one_such(d: Discourse, such: Such) -> Condition:
     """The first place that is so is where the robot stays, and what "there" means."""
     going, place, none = first_such(d, such)
-    d.command.pending += going
-    d.rounds.round.such = place.name
-    d.rounds.round.claims = Claims(
-        negated(none), d.say("it_is_there", place=place), d.say("no_such_places")
-    )
-    d.scene.at = d.scene.place = place
+    d.first_of_all(*going)
+    d.round = replace(d.round, such=place.name)
+    there, nowhere = d.say("it_is_there", place=place), d.say("no_such_places")
+    claims = Claims(negated(none), there, nowhere)
+    d.round = replace(d.round, claims=claims)
+    d.scene = d.scene.arrived(place)
     thing = such.trait.thing
     if thing is not None and thing.person and not such.trait.denied:
-        d.scene.person, d.scene.thing_last = (
-            Thing(thing.value, person=True, here=True, plural=True),
-            False,
+        d.scene = d.scene.speaking_of_person(
+            Thing(thing.value, person=True, here=True, plural=True)
         )
-        d.scene.with_person = None if thing.text != ANYONE else thing.value
+        d.scene = replace(d.scene, with_person=None if thing.text != ANYONE else thing.value)
     elif thing is not None and not thing.person:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
     return negated(none)
 
 
@@ -128,11 +125,14 @@ def if_any_such(d: Discourse, node: Node) -> Steps:
     told_of = bool(means & TELLING)
     if not told_of and "guide" not in means:
         return for_each_place_such(d, node)
-    outer, d.command.pending, d.rounds.round.told_of = d.command.pending, [], told_of
+    outer = d.command.pending
+    d.round = replace(d.round, told_of=told_of)
+    d.command = replace(d.command, pending=())
     condition = so_in(d, node, "some")
-    before, d.command.pending = d.command.pending, outer
+    before = d.command.pending
+    d.command = replace(d.command, pending=outer)
     if told_of:
-        d.branch.claim = Claim(d.rounds.round.claims.yes, d.known_by_now())
+        d.branch = replace(d.branch, claim=Claim(d.round.claims.yes, d.known_by_now()))
     return [*before, If(condition, tuple(d.build(node.parts["steps"])))]
 
 
@@ -141,15 +141,16 @@ def for_each_place_such(d: Discourse, node: Node) -> Steps:
     """ "bring a stapler to every office that has none": done where it is seen to be so."""
     place = Recall(d.variable("place"))
     thing: Thing | None = d.get(node, "thing")
-    d.scene.at = d.scene.place = place
+    d.scene = d.scene.arrived(place)
     trait: Trait = d.get(node, "place_trait")
-    outer, d.rounds.in_loop = d.rounds.in_loop, True
+    outer = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
     if thing is not None:
-        d.scene.at = None
+        d.scene = replace(d.scene, at=None)
         body = deliver(d, thing, None, Where(place))
     else:
         body = d.build(node.parts["steps"])
-    d.rounds.in_loop = outer
-    d.scene.at = d.scene.with_person = None
+    d.loops = replace(d.loops, in_loop=outer)
+    d.scene = d.scene.wandered()
     found_out = (*trait.first, If(trait.condition, tuple(body)))
     return [round_of(d, kind_places(d, d.get(node, "kinds")), [*found_out], place.name)]

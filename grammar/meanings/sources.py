@@ -40,7 +40,7 @@ def told_where(d: Discourse, thing: Thing) -> None:
     follow."""
     if thing.person or not isinstance(thing.place, Text | Items):
         return
-    d.deliveries.said_to_be.append(thing)
+    d.deliveries = replace(d.deliveries, said_to_be=(*d.deliveries.said_to_be, thing))
     source = Where(thing.place)
     fetching = just_fetched(d)
     if fetching is not None and any(is_called(d, thing, each) for each in fetching.things):
@@ -103,7 +103,7 @@ def keep_fetching(
     """Keep a command that takes things from nobody knows where."""
     things = frozenset(unsourced(steps))
     if things:
-        d.deliveries.fetching = Fetching(again, steps, things, scene, known)
+        d.deliveries = replace(d.deliveries, fetching=Fetching(again, steps, things, scene, known))
 
 
 def unsourced(steps: Steps) -> Iterator[Value]:
@@ -140,11 +140,12 @@ def just_fetched(d: Discourse) -> Fetching | None:
 def made_anew(d: Discourse, fetching: Fetching, source: Where | None) -> Steps:
     """The steps of a command, with what is fetched taken from there."""
     del d.done[-len(fetching.steps) :]
-    d.scene = fetching.scene.copy()
-    d.variables.intersection_update(fetching.variables)
-    outer, d.deliveries.taken_from = d.deliveries.taken_from, source
+    d.scene = fetching.scene
+    d.variables &= fetching.variables
+    outer = d.deliveries.taken_from
+    d.deliveries = replace(d.deliveries, taken_from=source)
     steps = fetching.again()
-    d.deliveries.taken_from = outer
+    d.deliveries = replace(d.deliveries, taken_from=outer)
     return steps
 
 

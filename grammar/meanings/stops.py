@@ -75,7 +75,7 @@ def said_on_tour(d: Discourse, before: int, scene: Scene) -> None:
     at = next((each for each in stops if each > here[-1]), before)
     del d.done[before:]
     d.done[at:at] = words
-    d.scene = scene.copy()
+    d.scene = scene
 
 
 def is_call(step: Step, methods: Set[str]) -> bool:
@@ -93,7 +93,7 @@ def skip_empty(d: Discourse, node: Node) -> Steps:
     there."""
     somebody = Holds(Ask("sees", {"thing": Text(ANYONE)}))
     loop = d.done[-1] if d.done else None
-    if d.rounds.in_loop and not isinstance(loop, ForEach):  # in the round itself
+    if d.loops.in_loop and not isinstance(loop, ForEach):  # in the round itself
         body = tuple(d.done)
         d.done.clear()
         return [If(somebody, body)]

@@ -3,7 +3,7 @@ asked for it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from grammar.chart import Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, Where
@@ -33,12 +33,14 @@ def stranger_comes(d: Discourse, node: Node) -> Steps:
     """ "Mr Keller is coming to the reception": waited for there when they are to be met."""
     spot: Where | None = d.get(node, "from")
     place = None if spot is None else spot.place
-    d.people.announced = Announced(called(d, node), place)
-    d.people.host = d.get(node, "host") or d.people.host
-    d.scene.person = Thing(Text(ANYONE), person=True, first=True, place=place)
-    d.scene.thing_last = False
+    d.people = replace(d.people, announced=Announced(called(d, node), place))
+    host = d.get(node, "host") or d.people.host
+    d.people = replace(d.people, host=host)
+    d.scene = replace(
+        d.scene, person=Thing(Text(ANYONE), person=True, first=True, place=place), thing_last=False
+    )
     if place is not None:
-        d.scene.place = place
+        d.scene = replace(d.scene, place=place)
     return aside(d, node)
 
 
@@ -49,14 +51,14 @@ def announced_one(d: Discourse, node: Node, place: Value | None = None) -> Steps
     them = isinstance(part, Node) and part.means in ("person_pronoun", "thing_it")
     if guest is None or not them or d.scene.person is None or not d.scene.person.first:
         return None
-    d.people.announced = None
+    d.people = replace(d.people, announced=None)
     return asked_for(d, guest.name, place or guest.place)
 
 
 def as_announced(d: Discourse, going: Steps) -> Steps:
     """Whoever was announced is waited for, where the robot goes for that or where they come to."""
     guest: Announced = d.people.announced
-    d.people.announced = None
+    d.people = replace(d.people, announced=None)
     return [*going, *asked_for(d, guest.name, None if going else guest.place)]
 
 
@@ -67,9 +69,10 @@ def asked_for(d: Discourse, name: str, place: Value | None) -> Steps:
     answer = d.variable("answer")
     question = Text(d.language.phrase("are_you", name=name))
     asking = Call("ask", {"question": question, "options": Items((yes, no))}, save_as=answer)
-    d.scene.person = d.people.visitor = Thing(Text(ANYONE), person=True, here=True)
-    d.scene.with_person, d.scene.thing_last = d.scene.person.value, False
-    wait = Call("wait_for", {"thing": d.scene.person.value})
+    visitor = Thing(Text(ANYONE), person=True, here=True)
+    d.people = replace(d.people, visitor=visitor)
+    d.scene = replace(d.scene.speaking_of_person(visitor), with_person=visitor.value)
+    wait = Call("wait_for", {"thing": visitor.value})
     return [*going, RepeatUntil(Compare(Recall(answer), "==", yes), (wait, asking))]
 
 

@@ -7,7 +7,7 @@ before everything the empty list or the zero that it is noted in.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -94,7 +94,7 @@ def note(d: Discourse, call: Step, notes: Steps, before: Steps) -> None:
 
 def before_all(d: Discourse, steps: Steps) -> None:
     """Put steps before all that was done; in a loop, before all that is done in a round."""
-    first = d.done if d.rounds.in_loop else (*d.around, d.done)[1 if d.around else 0]
+    first = d.done if d.loops.in_loop else (*d.around, d.done)[1 if d.around else 0]
     first[:0] = steps
 
 
@@ -108,7 +108,7 @@ def moved(steps: Any) -> bool:
 
 def asked_so_far(d: Discourse) -> list[Survey]:
     """The questions among the steps so far, here and around."""
-    surveys: list[Survey] = d.answers.surveys
+    surveys: tuple[Survey, ...] = d.answers.surveys
     done = (*d.around, d.done)
     calls = [each for steps in done for each in nodes(steps) if isinstance(each, Call)]
     found = [each for each in surveys if any(each.call is call for call in calls)]
@@ -158,7 +158,7 @@ def _in_any_case(steps: Iterable[Step]) -> Iterator[Step]:
 def several_asked(d: Discourse) -> bool:
     """Whether "the answer" is that of several: of who was asked the same, or of who was asked only
     because of what somebody else had answered."""
-    surveys: list[Survey] = d.answers.surveys
+    surveys: tuple[Survey, ...] = d.answers.surveys
     last = surveys[-1] if surveys else None
     if last is None or d.answers.last is None or d.answers.last != last.call.save_as:
         return False
@@ -182,7 +182,7 @@ def asked_yet(d: Discourse) -> bool:
     return bool(asked_so_far(d))
 
 
-def of_one_question(surveys: list[Survey]) -> list[Survey]:
+def of_one_question(surveys: Sequence[Survey]) -> list[Survey]:
     """Those that asked the same as the last one; also what was asked of others in other words."""
     last = surveys[-1]
     again = {each.who for each in surveys if _alike(each, last)}

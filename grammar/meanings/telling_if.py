@@ -78,11 +78,11 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
         return [late]
     if met is None and not before_it:
         as_before(d, condition)
-    start = d.scene.copy()
+    start = d.scene
     meet_there(d, met)
     then = told_so(d, node, claim)
-    after = d.scene.copy()
-    d.scene = start.copy()
+    after = d.scene
+    d.scene = start
     part = other_branch(d, node, condition)
     otherwise: Steps = []
     if part is not None:
@@ -92,7 +92,7 @@ def tell_condition(d: Discourse, node: Node) -> Steps:
     leave_off(d, after)
     counted, condition = counted_first(condition, [*then, *otherwise])
     whole = If(condition, tuple(then), tuple(otherwise))
-    d.branch.before = Branched(whole, start, met, d.answers.last)
+    d.branch = replace(d.branch, before=Branched(whole, start, met, d.answers.last))
     return [*before_it, *counted, whole]
 
 

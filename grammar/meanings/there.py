@@ -65,7 +65,7 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
     host = host_of_visit(d, thing)
     if host is not None:  # "take him to Clara's office. If she is not there, ..."
-        d.people.named.append(host.text)
+        d.names(host.text)
         thing = host
     survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     if not node.production.fixed.get("it"):
@@ -100,9 +100,11 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     else:
         result = _is_doing(d, node, thing) or is_there(d, thing, search)
     if search and d.branch.met is not None:
-        d.branch.met = replace(d.branch.met, sought=True)
+        d.branch = replace(d.branch, met=replace(d.branch.met, sought=True))
     if node.production.fixed.get("no"):
-        d.branch.met = replace(d.branch.met, holds=False) if d.branch.met is not None else None
+        d.branch = replace(
+            d.branch, met=replace(d.branch.met, holds=False) if d.branch.met is not None else None
+        )
         result = Not(result)
         if "state" in node.parts:  # "the cup is not clean": there is one, but none that is so
             plain = {name: part for name, part in node.parts.items() if name != "state"}
@@ -149,7 +151,7 @@ def _is_doing(d: Discourse, node: Node, thing: Thing) -> Condition | None:
     if thing.here or d.scene.with_person == thing.value:
         return seen
     there = is_there(d, thing, search=True)
-    d.branch.met = None
+    d.branch = replace(d.branch, met=None)
     return Both((there, seen))
 
 
@@ -171,8 +173,8 @@ def just_branched(d: Discourse, no: bool) -> Condition | None:
         return None
     if before.met.holds is not no:  # the same case again says something else
         return None
-    d.scene = before.scene.copy()
-    d.branch.met = replace(before.met, holds=not no)
+    d.scene = before.scene
+    d.branch = replace(d.branch, met=replace(before.met, holds=not no))
     return negated(step.condition)
 
 
@@ -194,11 +196,11 @@ def is_there(d: Discourse, thing: Thing, search: bool = False) -> Condition:
         else:
             known = Holds(Ask("sees", {"thing": sought(d, thing)}))
     if thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
+        d.scene = d.scene.speaking_of_person(thing)
         looked = {each.arguments.get("place") for each in searches(known)}
         if thing.known and thing.place is None and len(looked) == 1:
             thing = replace(thing, place=looked.pop())  # "see if Bob is in his office. If he is"
-    d.branch.met = Meeting(thing)
+    d.branch = replace(d.branch, met=Meeting(thing))
     return known
 
 
@@ -208,7 +210,7 @@ def just_agreed(d: Discourse, no: bool = False) -> Condition | None:
     if known is None:
         return None
     condition, person = known
-    d.branch.met = Meeting(person, holds=not no)
+    d.branch = replace(d.branch, met=Meeting(person, holds=not no))
     return negated(condition) if no else condition
 
 
@@ -237,7 +239,7 @@ def seen_there(d: Discourse) -> Condition | None:
     if last.value != Ask("sees", {"thing": sought(d, about)}):
         return None
     del d.done[-2:]
-    d.reports.last = None
+    d.reports = replace(d.reports, last=None)
     return Holds(Ask("find", {"thing": sought(d, about), "place": about.place}))
 
 
@@ -246,18 +248,18 @@ def _each_of_them(d: Discourse, node: Node, people: tuple[Value, ...], search: b
     found: list[Condition] = []
     for value in people:
         person = Thing(value, known=True, person=True)
-        d.scene.person = person
+        d.scene = replace(d.scene, person=person)
         spot: Where | None = d.get(node, "from")
         if spot is not None:
             person = replace(person, place=spot.place, furniture=spot.furniture)
         found.append(is_there(d, person, search))
-    d.branch.met = None
+    d.branch = replace(d.branch, met=None)
     part = node.parts.get("person_ref") or node.parts["thing"]
     either = node.production.fixed.get("any") or set(d.language.speech.get("or", ())) & set(
         d.norms(part.start, part.end)
     )
     if either and d.scene.person is not None and d.scene.person.person:  # whoever of them it is
-        d.scene.person = Thing(Text(ANYONE), person=True, plural=True, here=True)
+        d.scene = replace(d.scene, person=Thing(Text(ANYONE), person=True, plural=True, here=True))
     return Either(tuple(found)) if either else Both(tuple(found))
 
 
@@ -266,7 +268,9 @@ def place_empty(d: Discourse, node: Node) -> Condition:
     """ "the lobby is empty": nobody is there."""
     anybody = Thing(Text(ANYONE), d.get(node, "place"), person=True)
     there = is_there(d, anybody)
-    d.branch.met = Meeting(anybody, holds=bool(node.production.fixed.get("occupied")))
+    d.branch = replace(
+        d.branch, met=Meeting(anybody, holds=bool(node.production.fixed.get("occupied")))
+    )
     return there if node.production.fixed.get("occupied") else Not(there)
 
 
@@ -281,7 +285,7 @@ def counted(d: Discourse, node: Node) -> Condition:
         thing = replace(thing, place=spot.place, furniture=spot.furniture)
     operator = d.get(node, "operator", "==")
     if operator in ("<", "<=") and not thing.person:  # "..., bring one": for where they are short
-        d.scene.lacking = replace(thing, place=thing.place or d.scene.at)
+        d.scene = replace(d.scene, lacking=replace(thing, place=thing.place or d.scene.at))
     return _so_many(d, thing, int(d.get(node, "count")), operator)
 
 
@@ -293,11 +297,11 @@ def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
         return Compare(known, operator, Number(number))
     if thing.place is not None and thing.place != d.scene.at:
         d.went(thing.place)
-        d.command.pending.append(Call("goto", {"place": thing.place}))
+        d.first_of_all(Call("goto", {"place": thing.place}))
     if thing.person:
         thing = replace(thing, count=None)
-        d.scene.person = replace(thing, plural=True, place=None, here=True)
-        d.reports.last_counted = d.scene.person
+        d.scene = replace(d.scene, person=replace(thing, plural=True, place=None, here=True))
+        d.reports = replace(d.reports, last_counted=d.scene.person)
     return Compare(Ask("count", {"thing": sought(d, thing)}), operator, Number(number))
 
 

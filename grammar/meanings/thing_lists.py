@@ -63,7 +63,7 @@ def all_listed(d: Discourse, part: Leaf | Node | None) -> Thing | None:
 
 def as_list(d: Discourse, things: list[Thing]) -> Thing:
     """The last of some things, which all of them can be spoken of with."""
-    d.deliveries.listed_before = tuple(things)
+    d.deliveries = replace(d.deliveries, listed_before=tuple(things))
     return replace(things[-1], listed=d.deliveries.listed_before)
 
 
@@ -84,12 +84,12 @@ def over_thing_list(d: Discourse, node: Node, things: list[Thing], one: One) -> 
         steps = [step for thing in things for step in for_one(d, thing, one)]
     else:
         each = Recall(d.variable("thing"))
-        d.scene.at = None
-        d.scene.thing, d.scene.thing_last = Thing(each), True  # "them", bound to this one
+        d.scene = replace(d.scene, at=None)
+        d.scene = d.scene.speaking_of(Thing(each))  # "them", bound to this one
         body = round_of_steps(d, lambda: one(Thing(each)))
-        d.scene.at = d.scene.with_person = None
+        d.scene = d.scene.wandered()
         steps = [ForEach(each.name, Items(tuple(thing.value for thing in things)), tuple(body))]
-    d.scene.thing, d.scene.thing_last = as_list(d, things), True
+    d.scene = d.scene.speaking_of(as_list(d, things))
     return steps
 
 
@@ -99,16 +99,16 @@ def fetched_from_here(d: Discourse, things: list[Thing], one: One) -> Steps | No
     here = just_sent_to(d)
     if d.deliveries.only_fetches or here is None:
         return None
-    scene = d.scene.copy()
+    scene = d.scene
     there = [replace(thing, place=here) for thing in things]
     steps = [step for thing in there for step in for_one(d, thing, one)]
     if (
         not any(isinstance(each, Call) and each.method == "grab" for each in steps)
         or d.scene.at == here
     ):
-        d.scene = scene.copy()
+        d.scene = scene
         return None
-    d.scene.thing, d.scene.thing_last = as_list(d, there), True
+    d.scene = d.scene.speaking_of(as_list(d, there))
     return steps
 
 
@@ -128,16 +128,17 @@ def fetched_for_later(d: Discourse, things: list[Thing], one: One) -> Steps:
         things = [replace(thing, place=here) for thing in things]
     steps = {thing.value: for_one(d, thing, one) for thing in things}
     if any(map(is_grab, steps.values())):
-        d.scene.at = at
-        d.scene.holding = None
-        d.deliveries.collected = things[-1]
+        d.scene = replace(d.scene, at=at, holding=None)
+        d.deliveries = replace(d.deliveries, collected=things[-1])
         steps = {each: [] for each in steps}
-    d.deliveries.fetched_list = FetchedList(tuple(things), steps, at, d.scene.at)
+    d.deliveries = replace(
+        d.deliveries, fetched_list=FetchedList(tuple(things), steps, at, d.scene.at)
+    )
     return [step for each in steps.values() for step in each]
 
 
 def for_one(d: Discourse, thing: Thing, one: One) -> Steps:
-    d.scene.thing, d.scene.thing_last = thing, True  # "them", bound to this one
+    d.scene = d.scene.speaking_of(thing)  # "them", bound to this one
     return round_of_steps(d, lambda: one(thing))
 
 
@@ -173,13 +174,15 @@ def off_the_list(d: Discourse, thing: Thing) -> Thing:
     if at is not None:
         del d.done[at : at + len(steps)]
     rest = tuple(each for each in fetched.things if each is not one)
-    d.deliveries.fetched_list = replace(fetched, things=rest, since=d.scene.at) if rest else None
+    d.deliveries = replace(
+        d.deliveries, fetched_list=replace(fetched, things=rest, since=d.scene.at) if rest else None
+    )
     if d.scene.delivered == thing.value:
-        d.scene.delivered = None
+        d.scene = replace(d.scene, delivered=None)
     if not rest:
-        d.deliveries.collected = None
+        d.deliveries = replace(d.deliveries, collected=None)
     if not rest and d.scene.at == fetched.since:  # none of them was brought anywhere yet
-        d.scene.at = fetched.at
+        d.scene = replace(d.scene, at=fetched.at)
     return replace(one, pronoun=False, listed=())
 
 

@@ -55,11 +55,7 @@ from grammar.wordforms import head_word, singular
 @meaning("find")
 def find(d: Discourse, node: Node) -> Steps:
     sought_for = node.parts.get("thing")
-    if (
-        d.rounds.round.such is not None
-        and isinstance(sought_for, Node)
-        and sought_for.means == "thing_it"
-    ):
+    if d.round.such is not None and isinstance(sought_for, Node) and sought_for.means == "thing_it":
         return []  # "I need an empty office. Go and find one": that is being done
     thing = noun_of(d, node)
     announced = announced_one(d, node, thing.place)
@@ -69,13 +65,13 @@ def find(d: Discourse, node: Node) -> Steps:
         return meet(d, thing)
     if isinstance(thing.group, Items):
         who = Recall(d.variable("person"))
-        d.scene.at = d.scene.with_person = None
+        d.scene = d.scene.wandered()
         return [ForEach(who.name, thing.group, tuple(if_missing(d, who)))]
     if thing.person and thing.count is not None:
         return meet_several(d, thing)
     if thing.several and not (thing.person and thing.every):
         return find_several(d, node, thing)
-    if d.rounds.found_already:
+    if d.loops.found_already:
         return []
     visited = places_gone_to(d) if thing.place is None else []
     if len(visited) > 1 and all(
@@ -107,9 +103,9 @@ def find_several(d: Discourse, node: Node, thing: Thing) -> Steps:
     best = isinstance(said, Node) and "superlative" in said.parts
     thing = replace(thing, place=thing.place or d.scene.at)
     steps = found_out(d, best_there(d, thing) if best else which_there(d, thing), None, back=False)
-    d.deliveries.listed_last = steps
+    d.deliveries = replace(d.deliveries, listed_last=tuple(steps))
     if not thing.person:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
     return steps
 
 
@@ -129,8 +125,8 @@ def grab(d: Discourse, node: Node) -> Steps:
         return deliver(d, thing, d.deliveries.meant_for.person, d.deliveries.meant_for.spot)
     if take_from_holder(d, thing):
         return []
-    d.scene.holding = thing.value
-    d.scene.thing, d.scene.thing_last = thing, True
+    d.scene = replace(d.scene, holding=thing.value)
+    d.scene = d.scene.speaking_of(thing)
     return [Call("grab", {"thing": sought(d, thing)})]
 
 
@@ -147,7 +143,7 @@ def fetch_from(d: Discourse, node: Node) -> Steps:
     if person.known:
         asking["person"] = person.value
     steps = [*meet(d, person), Call("ask", asking)]
-    d.scene.person = person
+    d.scene = replace(d.scene, person=person)
     thing = Thing(Text(what), noun=head_word(what, d.language), here=True)
     return [*steps, *deliver(d, thing, None, None)]
 
@@ -174,7 +170,7 @@ def put(d: Discourse, node: Node) -> Steps:
     if source is not None:
         thing = replace(thing, place=source.place, furniture=source.furniture)
     if source is not None and node.parts["from"].start > node.parts.get("where", node).start:
-        d.scene.place = there
+        d.scene = replace(d.scene, place=there)
     spot: Where = on_it or d.get(node, "where") or Where()
     stray = extraposed(d, where) if thing.place is None else None
     if stray is not None:
@@ -188,7 +184,7 @@ def put(d: Discourse, node: Node) -> Steps:
     another = thing.place is not None and not thing.pronoun
     if last == Call("put", {"thing": thing.value}) and not another:
         d.done.pop()  # "carry it to the ward and put it on the table": put down once
-        d.scene.holding = thing.value
+        d.scene = replace(d.scene, holding=thing.value)
     if node.production.fixed.get("brought") and d.scene.delivered == thing.value and given_last(d):
         return []  # "get the cup and bring it back": here
     thing = off_the_list(d, thing)
@@ -225,7 +221,7 @@ def where_gone_to(d: Discourse, node: Node) -> Where | None:
         return None
     spot: Where = d.build(where)
     d.done.pop()
-    d.scene.at = d.scene.at_furniture = None
+    d.scene = replace(d.scene, at=None, at_furniture=None)
     return spot
 
 
@@ -251,7 +247,9 @@ def put_each(d: Discourse, node: Node) -> Steps:
     at, here = len(d.done), d.scene.at
     d.done.extend(put(d, node))
     if d.scene.at != here:
-        d.scene.at = None  # nobody says that the next thing is where the first one was brought to
+        d.scene = replace(
+            d.scene, at=None
+        )  # nobody says that the next thing is where the first one was brought to
     if "more" in node.parts:
         d.done.extend(d.build(node.parts["more"]))
     steps = d.done[at:]
@@ -279,12 +277,9 @@ def means_who_is_met(d: Discourse, node: Node) -> bool:
 
 def with_them(d: Discourse, node: Node) -> Steps:
     them = node.parts["thing"]
-    d.rounds.bound[id(them)] = d.scene.person
-    try:
+    with d.bound(them, d.scene.person):
         parts = {"person_ref": them, "other": node.parts["person_ref"]}
         return guide_to_person(d, replace(node, parts=parts))
-    finally:
-        del d.rounds.bound[id(them)]
 
 
 @meaning("bring")
@@ -319,10 +314,9 @@ def bring(d: Discourse, node: Node) -> Steps:
         target: Where | None = d.get(node, "where")
         to = d.start() if target is None or target.place is None else target.place
         steps = meet(d, thing)
-        d.deliveries.fetched = lead(
-            d, thing, to
-        )  # "fetch him and take him to ..." is straight there
-        return [*steps, d.deliveries.fetched]
+        leading = lead(d, thing, to)  # "fetch him and take him to ..." is straight there
+        d.deliveries = replace(d.deliveries, fetched=leading)
+        return [*steps, leading]
     if node.production.fixed.get("handing") and person is not None and not thing.pronoun:
         person = handed_there(d, thing, person)
     if person is not None and thing.pronoun and d.done:
@@ -335,9 +329,11 @@ def bring(d: Discourse, node: Node) -> Steps:
     if person is None and spot is None and node.production.fixed.get("open"):
         return if_they_want_it(d, thing, None, brought_to_whoever_needs_it(d, thing))
     steps = if_they_want_it(d, thing, person, deliver(d, thing, person, spot))
-    d.deliveries.destined = d.deliveries.last if node.production.fixed.get("destined") else None
+    d.deliveries = replace(
+        d.deliveries, destined=d.deliveries.last if node.production.fixed.get("destined") else None
+    )
     if node.production.fixed.get("why") and isinstance(d.deliveries.last, Delivery):
-        d.deliveries.last = replace(d.deliveries.last, needed=True)
+        d.deliveries = replace(d.deliveries, last=replace(d.deliveries.last, needed=True))
     return steps
 
 
@@ -354,7 +350,8 @@ def brought_to_whoever_needs_it(d: Discourse, thing: Thing) -> Steps:
     """Bring something without a word to whom."""
     person, spot = meant_for(d, thing)
     steps = deliver(d, thing, person, spot)
-    d.deliveries.brought = handing_over(steps) if person is not None or spot is not None else ()
+    handed = handing_over(steps) if person is not None or spot is not None else ()
+    d.deliveries = replace(d.deliveries, brought=handed)
     return steps
 
 
@@ -384,7 +381,7 @@ def handed_there(d: Discourse, thing: Thing, person: Thing) -> Thing:
         return person
     place = d.scene.at
     d.done.pop()
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return replace(person, place=place, here=False)
 
 
@@ -460,22 +457,21 @@ def statement(d: Discourse, node: Node) -> Steps:
     if thing.place is None and not thing.known and isinstance(d.scene.at, Text):
         thing = replace(thing, place=d.scene.at)  # "go to the hall, there is a woman"
     if thing.place is not None:
-        d.scene.place = thing.place
+        d.scene = replace(d.scene, place=thing.place)
         told_where(d, thing)
         told_where_all_are(d, thing)
         known_to_be(d, thing.value, thing.place)
     if thing.person:
-        d.scene.person, d.scene.thing_last = thing, False
-        d.scene.with_person = None
+        d.scene = replace(d.scene.speaking_of_person(thing), with_person=None)
         fetched_there(d, thing, thing.place)
     else:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
     guest = d.scene.person
     d.get(node, "for_whom")  # "the folder is for Clara": she is spoken of now, too
     if thing.person:  # but "there is a visitor for Clara": it is about the visitor
-        d.scene.person = guest
+        d.scene = replace(d.scene, person=guest)
     said = sentence_form(d.words(node.start, node.end))
-    d.reports.last, d.reports.step = Report("only", Text(said), about_here=False), None
+    d.reports = replace(d.reports, last=Report("only", Text(said), about_here=False), step=None)
     return []
 
 
@@ -485,10 +481,10 @@ def handed(d: Discourse, node: Node) -> Steps:
     thing: Thing = d.get(node, "thing")
     thing = replace(thing, place=None, furniture=None, here=d.scene.at is None)
     if "person_ref" not in node.parts:
-        d.scene.thing, d.scene.thing_last = thing, True
+        d.scene = d.scene.speaking_of(thing)
         return []
     steps = deliver(d, thing, d.get(node, "person_ref"), None)
-    d.deliveries.destined = d.deliveries.last
+    d.deliveries = replace(d.deliveries, destined=d.deliveries.last)
     return steps
 
 
@@ -506,7 +502,7 @@ def scan(d: Discourse, node: Node) -> Steps:
         steps = look_for(d, thing)
     elif thing is not None and thing.here:  # the code is what counts, whatever it is on
         part = node.parts["thing"]
-        d.command.resolved.update(range(part.start, part.end))
-    d.answers.code = d.variable("code")
-    d.answers.last = d.reports.last = None
+        d.resolves(range(part.start, part.end))
+    d.answers = replace(d.answers, code=d.variable("code"), last=None)
+    d.reports = replace(d.reports, last=None)
     return [*steps, Call("scan", {}, save_as=d.answers.code)]

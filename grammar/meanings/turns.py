@@ -3,6 +3,8 @@ yes, tell them ..."), or that of all ("if they say yes, tell David ...")."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Thing
 from grammar.meanings.answered import people_asked
@@ -18,7 +20,7 @@ def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
     """A condition on the last answer of each of several: what is said to be done for "them" is done
     with whose turn it is; what is told to somebody else hangs on the answers of all."""
     survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
-    if survey is None or not isinstance(survey.who, Recall) or d.rounds.in_loop:
+    if survey is None or not isinstance(survey.who, Recall) or d.loops.in_loop:
         return condition
     if not in_loop(d, survey.call) or survey.who == survey.where:
         return condition
@@ -26,8 +28,11 @@ def in_their_turn(d: Discourse, node: Node, condition: Condition) -> Condition:
         return condition
     if told_to_others(d, node) and not asks_on(node):
         return of_all(d, condition)
-    d.scene.person = Thing(survey.who, known=True, person=True, here=True)
-    d.scene.with_person = survey.who
+    d.scene = replace(
+        d.scene,
+        person=Thing(survey.who, known=True, person=True, here=True),
+        with_person=survey.who,
+    )
     return condition
 
 
@@ -42,13 +47,13 @@ def of_whoever_says_so(d: Discourse, node: Node) -> Condition | None:
     if d.tokens[condition.start].norm not in d.language.words_called("any_of_them"):
         return None  # "if one of them says no, ask both ..."
     survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
-    if survey is None or d.rounds.in_loop or not in_loop(d, survey.call):
+    if survey is None or d.loops.in_loop or not in_loop(d, survey.call):
         return None
     then = node.parts["then"]
     them = d.language.words_called("plural_pronouns") & set(d.norms(then.start, then.end))
     if not asks_on(node) and (not them or told_to_others(d, node)):
         return None
-    d.branch.met = None
+    d.branch = replace(d.branch, met=None)
     return wanted(d, survey, d.get(condition, "said")).given(survey)
 
 

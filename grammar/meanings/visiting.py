@@ -42,7 +42,7 @@ def send_person(d: Discourse, node: Node) -> Steps:
     person: Thing = d.get(node, "person_ref")
     if "to" in node.parts:
         host: Thing = d.get(node, "to")
-        d.scene.person = person
+        d.scene = replace(d.scene, person=person)
         return speak_to(d, person, [d.say("please_go", place=named(d, host))])
     spot: Where = d.get(node, "spot")
     if spot.place is None:
@@ -125,21 +125,21 @@ def with_each_asked(d: Discourse, clause: Node) -> Steps | None:
         return None
     d.done.pop()
     outer, d.done = d.done, list(loop.steps)
-    inside, d.rounds.in_loop = d.rounds.in_loop, True
-    d.rounds.bound[id(part)] = replace(
-        d.scene.person, count=None, plural=False, place=None, here=True
-    )
+    inside = d.loops.in_loop
+    d.loops = replace(d.loops, in_loop=True)
+    d.bind(part, replace(d.scene.person, count=None, plural=False, place=None, here=True))
     steps = d.build(clause)
     body = (*d.done, *steps)
-    d.done, d.rounds.in_loop = outer, inside
-    d.scene.at = d.scene.with_person = None
+    d.done = outer
+    d.loops = replace(d.loops, in_loop=inside)
+    d.scene = d.scene.wandered()
     return [msgspec.structs.replace(loop, steps=body)]
 
 
 @meaning("to_the_next")
 def to_the_next(d: Discourse, node: Node) -> Steps:
     """ "go on to the next one": what a round does in any case."""
-    if not d.rounds.in_loop:
+    if not d.loops.in_loop:
         words = d.words(node.start, node.end)
         raise NotUnderstood(
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
@@ -150,7 +150,7 @@ def to_the_next(d: Discourse, node: Node) -> Steps:
 @meaning("guard")
 def guard(d: Discourse, node: Node) -> Steps:
     """ "keep watch": to stay, for what is to be done whenever somebody comes."""
-    d.people.on_duty = "guard"
+    d.people = replace(d.people, on_duty="guard")
     return moment(d, node)
 
 
@@ -185,8 +185,8 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     if part is not None:
-        d.command.resolved.update(range(part.start, part.end))
-    d.scene.place = place
+        d.resolves(range(part.start, part.end))
+    d.scene = replace(d.scene, place=place)
     return place
 
 
@@ -199,5 +199,6 @@ def person_of_answer(d: Discourse, node: Node) -> Thing:
     if survey is None or place is None:
         return person_pronoun(d, node)
     who = Recall(str(survey.call.save_as))
-    d.scene.person, d.scene.thing_last = Thing(who, place=place, known=True, person=True), False
-    return d.scene.person
+    person = Thing(who, place=place, known=True, person=True)
+    d.scene = d.scene.speaking_of_person(person)
+    return person

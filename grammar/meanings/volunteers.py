@@ -75,14 +75,12 @@ def over_willing(d: Discourse, node: Node, wanted: Willing, one: Callable[[Any],
     """A command about whoever says yes: "bring somebody who speaks French to the reception"."""
     search, found = search_for(d, wanted)
     agreed = Thing(found, known=True, person=True, here=True)
-    d.scene.person, d.scene.thing_last = agreed, False
-    d.scene.with_person = found
+    d.scene = replace(d.scene.speaking_of_person(agreed), with_person=found)
     body = [step for step in one(agreed) if not looks_for(step, found)]
-    d.scene.person, d.scene.thing_last = (
-        replace(d.scene.person or agreed, value=found, known=True, here=True),
-        False,
+    d.scene = d.scene.speaking_of_person(
+        replace(d.scene.person or agreed, value=found, known=True, here=True)
     )
-    d.scene.with_person = found
+    d.scene = replace(d.scene, with_person=found)
     return [*search, If(_nobody(found), (d.say("nobody_agreed"),), tuple(body))]
 
 
@@ -102,7 +100,7 @@ def search_for(d: Discourse, wanted: Willing) -> tuple[Steps, Recall]:
     agreed = If(yes, (Remember(found.name, who), End()))
     nothing = Remember(found.name, Text(""))
     by_name = known_by_name(d, person, person.text)
-    d.scene.at = d.scene.at if wanted.places is None else None
+    d.scene = replace(d.scene, at=d.scene.at if wanted.places is None else None)
     if by_name and wanted.places is None:
         there = Holds(Ask("find", {"thing": who}))
         return [nothing, ForEach(who.name, Items(by_name), (If(there, (asking, agreed)),))], found
@@ -114,7 +112,7 @@ def search_for(d: Discourse, wanted: Willing) -> tuple[Steps, Recall]:
     going = Call("goto", {"place": place})
     leave = If(Not(_nobody(found)), (End(),))
     round_of = ForEach(place.name, wanted.places or Ask("places"), (going, everybody, leave))
-    d.scene.at = None
+    d.scene = replace(d.scene, at=None)
     return [nothing, round_of], found
 
 

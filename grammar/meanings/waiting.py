@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import Final
 
 import msgspec
@@ -54,7 +55,7 @@ LOOK_EVERY: Final = 10
 @meaning("on_sight")
 def on_sight(d: Discourse, node: Node) -> Steps:
     """ "as soon as you see Bob, ...": on a round of places, at the one where he is."""
-    if d.rounds.round.stop is not None:
+    if d.round.stop is not None:
         there: Steps = d.build(node.parts["then"])
         return there
     if not in_round(d):
@@ -95,7 +96,7 @@ def when(d: Discourse, node: Node) -> Steps:
         return if_(d, node)
     person = d.scene.person
     if d.people.came is not None and not always and not names_somebody(node.parts["condition"]):
-        d.scene.person = d.people.came
+        d.scene = replace(d.scene, person=d.people.came)
         after: Steps = d.build(node.parts["then"])
         return after
     if not always and may_be_another(d, node.parts["condition"]):
@@ -107,7 +108,7 @@ def when(d: Discourse, node: Node) -> Steps:
         d.done.pop()  # "wait for the doctor, and when she comes, ..."
     last = d.done[-1] if d.done else None
     if not before and person is not None and just_came(last) and wait_until(condition) == [ANY]:
-        d.scene.person = person  # "wait for a visitor. When somebody comes, ..."
+        d.scene = replace(d.scene, person=person)  # "wait for a visitor. When somebody comes, ..."
         met: Steps = d.build(node.parts["then"])
         return met
     *going, waiting = wait_until(condition)
@@ -258,8 +259,9 @@ def _waits(step: Step | Value | None) -> bool:
 def moment(d: Discourse, node: Node) -> Steps:
     """ "wait", "stay here": for how long is not said, so that it is until what is waited for next
     (`until_then`)."""
-    d.command.moments.append(d.call_of(node, "wait"))
-    return [d.command.moments[-1]]
+    waiting = d.call_of(node, "wait")
+    d.command = replace(d.command, moments=(*d.command.moments, waiting))
+    return [waiting]
 
 
 def until_then(d: Discourse, done: Steps) -> Steps:
@@ -356,7 +358,9 @@ def tell_when(d: Discourse, node: Node) -> Steps:
         waiting = waiting[:-1]  # "wait for her, and when she comes, tell Bob"
     away = d.scene.at is not None or moved(waiting)
     person: Thing = d.get(node, "person_ref")
-    d.scene.looked_in = d.scene.at  # whoever is to be told is not there, or would know
+    d.scene = replace(
+        d.scene, looked_in=d.scene.at
+    )  # whoever is to be told is not there, or would know
     told = speak_to(d, person, known_words(d) if claim is None else [claim])
     if is_me(person) and away:
         told = [Call("goto", {"place": d.start()}), *told]
@@ -390,7 +394,7 @@ def wait_before_going_back(d: Discourse, node: Node) -> None:
         return
     d.done.pop()
     if d.scene.place is None or d.scene.place == BACK.arguments["place"]:
-        d.scene.at = None  # the robot has not left yet
+        d.scene = replace(d.scene, at=None)  # the robot has not left yet
     else:
         d.went(d.scene.place)
 
@@ -460,5 +464,5 @@ def at_time(d: Discourse, node: Node) -> Steps:
 @meaning("no_later")
 def no_later(d: Discourse, node: Node) -> Steps:
     """ "by noon": what is done at once is done by then."""
-    d.background.append(d.words(node.start, node.end))
+    d.background += (d.words(node.start, node.end),)
     return []

@@ -20,7 +20,7 @@ from grammar.plan import Ask, Call, Holds, If, Text
 @meaning("when_found")
 def when_found(d: Discourse, node: Node) -> Steps:
     """ "when you find one, ...": after a search it is done with whoever was found."""
-    if d.rounds.round.stop is not None:  # at each place where it is so
+    if d.round.stop is not None:  # at each place where it is so
         there: Steps = d.build(node.parts["then"])
         return there
     last = d.done[-1] if d.done else None
@@ -31,10 +31,10 @@ def when_found(d: Discourse, node: Node) -> Steps:
             return done
         return waited_for(d, node)
     if search is not None and d.scene.thing_last and d.scene.thing is not None:
-        d.scene.thing = replace(d.scene.thing, here=True, place=None)
+        d.scene = replace(d.scene, thing=replace(d.scene.thing, here=True, place=None))
     if search is not None and "otherwise" in node.parts:
         return if_found_so(d, node, search)
-    start = d.scene.copy()
+    start = d.scene
     then: Steps = d.build(node.parts["then"])
     takes = bool(then) and isinstance(then[0], Call) and then[0].method == "grab"
     if search is None or not isinstance(last, If):
@@ -44,12 +44,12 @@ def when_found(d: Discourse, node: Node) -> Steps:
     whole = If(search.found, tuple(then), missing)
     if d.scene.thing is not None and d.scene.thing_last:
         met = Meeting(replace(d.scene.thing, here=False, pronoun=False), sought=True)
-        d.branch.before = Branched(whole, start, met, d.answers.last)
+        d.branch = replace(d.branch, before=Branched(whole, start, met, d.answers.last))
     return [whole]
 
 
 def waited_for(d: Discourse, node: Node) -> Steps:
     """ "when you find somebody, ...": they are looked for until somebody is found."""
     looking = wait_until(Holds(Ask("find", {"thing": Text(ANYONE)})))
-    d.scene.person, d.scene.thing_last = Thing(Text(ANYONE), person=True, here=True), False
+    d.scene = d.scene.speaking_of_person(Thing(Text(ANYONE), person=True, here=True))
     return [*looking, *d.build(node.parts["then"])]

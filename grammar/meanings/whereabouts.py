@@ -77,7 +77,7 @@ def look_on(d: Discourse, node: Node) -> Steps:
         if looked is not None:
             return looked
     place = Recall(d.variable("place"))
-    d.scene.at = d.scene.with_person = None
+    d.scene = d.scene.wandered()
     return [ForEach(place.name, places, (Call("goto", {"place": place}),))]
 
 

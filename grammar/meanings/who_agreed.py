@@ -3,6 +3,7 @@ cafeteria", "find out whether anybody there speaks French and ask them to come".
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Leaf, Node
@@ -56,11 +57,8 @@ def for_who_agreed(d: Discourse, part: Node, make: Make) -> Make:
         survey: Survey = d.answers.surveys[-1]
         given = yes(d).given(survey)
         person = each_asked(d)
-        d.scene.at = None
-        d.rounds.bound[id(part)] = person
-        try:
+        d.scene = replace(d.scene, at=None)
+        with d.bound(part, person):
             return [If(given, tuple(round_of_steps(d, make)))]
-        finally:
-            del d.rounds.bound[id(part)]
 
     return steps

@@ -69,7 +69,7 @@ def spoken_of(d: Discourse) -> Thing | None:
         or person.plural
         or person.count
         or person.group is not None
-        or d.rounds.in_loop
+        or d.loops.in_loop
     ):
         return None
     if d.scene.with_person == person.value:
@@ -93,7 +93,7 @@ def several_of_a_kind(d: Discourse, node: Node, person: Thing | None) -> Thing |
         return person
     named = known_by_name(d, person, person.text)
     if named:
-        d.scene.group = Items(named)
+        d.scene = replace(d.scene, group=Items(named))
         return replace(person, known=True, plural=True, group=d.scene.group)
     return replace(person, value=Text(ANYONE), plural=True)
 
@@ -120,9 +120,9 @@ def told_in_each(d: Discourse, node: Node, person: Thing | None) -> ForEach | No
 def asked_in_each(d: Discourse, told: ForEach, ask: Callable[[Thing], Steps]) -> Steps:
     """What asks everybody in each of the places where they were told something."""
     d.done.pop()
-    d.scene.at = d.scene.place = Recall(told.variable)
+    d.scene = d.scene.arrived(Recall(told.variable))
     everybody = Thing(Text(ANYONE), person=True, plural=True, here=True)
     steps = round_of_steps(d, lambda: ask(everybody))
-    d.scene.at = d.scene.with_person = None
-    d.scene.person, d.scene.thing_last = everybody, False
+    d.scene = d.scene.wandered()
+    d.scene = d.scene.speaking_of_person(everybody)
     return [ForEach(told.variable, told.items, (*told.steps, *steps))]

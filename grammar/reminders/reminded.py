@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from grammar.chart import Node
@@ -24,4 +24,4 @@ def note_reminder(d: Discourse, node: Node, person: Thing | None, of: Of) -> Non
     text = node.parts.get("text")
     inside: range | tuple[int, ...] = range(text.start, text.end) if text is not None else ()
     said = {d.tokens[at].norm for at in range(node.start, node.end) if at not in inside}
-    d.answers.reminded = Reminded(person, of) if verbs & said else None
+    d.answers = replace(d.answers, reminded=Reminded(person, of) if verbs & said else None)
