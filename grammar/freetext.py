@@ -289,7 +289,8 @@ class Judge:
         if 0 < greeted < end - start:  # "good morning to everyone who comes": to whom
             return doubt(start + greeted, "said_or_done")
         if node.production.fixed.get("wish"):  # "a nice weekend"
-            where = [at for at in range(start, end) if self.tokens[at].norm in words.not_greeting]
+            no_wish = words.not_greeting | words.conditions | words.subordinating
+            where = [at for at in range(start, end) if self.tokens[at].norm in no_wish]
             return doubt(where[0], "said_or_done") if where else None
         late = range(start + 1, end) if self.tokens[start].norm in words.not_greeting else ()
         if spoken and any(self.tokens[at].norm in words.that for at in late):
@@ -397,8 +398,9 @@ class Judge:
         length = self.greeting(start)
         behind = self.norms(start + length, start + length + 1)
         wish = self.words.wishes.longest(self.all_norms, start)
-        if wish > length or not set(behind) & self.words.not_greeting:
-            return 0
+        no_greeting = self.words.not_greeting | self.words.subordinating
+        if wish > length or not set(behind) & no_greeting:
+            return 0  # but "good night when we are there"
         return length
 
     # --- orders

@@ -61,6 +61,8 @@ class OpenText:
         if self.judge.given_to(at) or self._never_first(at):
             cost += RECEIVER_IN_TEXT
         greeted = {at + self.judge.complete_greeting(at)} - {at}
+        that = self.judge.words.that
+        reported = self.tokens[at].norm in that or (at > 0 and self.tokens[at - 1].norm in that)
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
             if position in greeted:
@@ -73,6 +75,8 @@ class OpenText:
                 if self._goes_on(position + 1) or self._is_aside(at, position + 1):
                     break
                 if token.norm == STOP:
+                    if reported:
+                        break  # what is told ends where its sentence does
                     if position + 1 < len(self.tokens) and self._condition(position + 1):
                         break
                     cost += 4.0

@@ -20,6 +20,9 @@ from grammar.tokens import COMMA, tokenise
 
 COMMA_PASSED_OVER: Final = 1.5
 FILLER_PASSED_OVER: Final = 0.1
+FALSE_START: Final = 0.5
+MOST_BEGUN: Final = 3
+"""Words with which somebody begins and, after a hesitation, begins anew."""
 MOST_KEPT: Final = 64
 """Wordings of one sentence that are remembered at once."""
 
@@ -72,7 +75,25 @@ class Prepared:
                     skips.setdefault(at, []).append((at + len(filler), FILLER_PASSED_OVER))
             if any((other,) in self.language.fillers for other in self.corrections.get(at, ())):
                 skips.setdefault(at, []).append((at + 1, CORRECTION))  # "pleas"
+            again = self._begun_again(at)
+            if again is not None:
+                skips.setdefault(at, []).append((again, FALSE_START))
         return skips
+
+    def _begun_again(self, at: int) -> int | None:
+        """Where the words that begin here are said once more: "go to, uh, go to the lab"."""
+        words = [token.norm for token in self.tokens]
+        hesitations = self.language.words_called("hesitations")
+        for end in range(at + 1, min(at + MOST_BEGUN, len(words)) + 1):
+            if self.tokens[end - 1].kind == "mark" or words[end - 1] in hesitations:
+                return None
+            again, hesitates = end, end > at + 1  # of two words nobody says the same twice
+            while again < len(words) and (words[again] in hesitations or words[again] == COMMA):
+                hesitates = hesitates or words[again] in hesitations
+                again += 1
+            if hesitates and words[at:end] == words[again : again + end - at]:
+                return again
+        return None
 
 
 class _Lately(threading.local):

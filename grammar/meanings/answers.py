@@ -67,13 +67,13 @@ def wanted(d: Discourse, survey: Survey, said: Said, *, strict: bool = False) ->
     negative = bool(_words(d, "negations") & set(norms))
     agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
     if set(survey.options) == {agree, refuse}:
-        if refuse in norms:
-            return Wanted((refuse,))
-        if agree not in norms and not is_about(d, survey, norms):
+        answered = agree in norms or refuse in norms
+        besides = [norm for norm in norms if norm not in (agree, refuse)]
+        if not (answered and not strict) and not is_about(d, survey, besides):
             raise NotUnderstood(
                 d.language.phrase("not_understood", part=d.words(said.start, said.end))
             )
-        return Wanted((refuse if negative else agree,))
+        return Wanted((refuse if negative or refuse in norms else agree,))
     chosen = tuple(each for each in survey.options if names_option(d, norms, each))
     named = {word for each in chosen for word in d.language.tokens_of(each)}
     if strict and not is_about(d, survey, [norm for norm in norms if norm not in named]):

@@ -74,7 +74,8 @@ def goes_on_with_somebody(d: Discourse, node: Node) -> bool:
         on
         and guest is not None
         and d.scene.with_person == guest
-        and d.scene.left.get(guest) == d.scene.at
+        and guest in d.scene.left
+        and d.scene.left[guest] == d.scene.at
     )
 
 

@@ -441,6 +441,9 @@ def turn_to_you(
         alone = d.language.speech.get(f"{words}_alone", {})
         if first.norm in alone and _ends_phrase(d, position + 1, end):
             turned = other or alone[first.norm]  # "better for her", but "her office"
+        owned = d.language.speech.get("addressing_last", {}).get("possessives", {})
+        if turned is not None and last < end and d.tokens[last].capital:
+            turned = owned.get(first.norm, turned)  # "ihr Buch", but "gefällt ihr das Buch"
         turned = instead.get(position, turned)
         if turned is not None:
             original = opened.replace(first.norm, turned, 1)

@@ -15,12 +15,14 @@ from datetime import datetime
 from typing import Final
 
 from grammar.chart import Chart, Node, TooMuch
+from grammar.coverage import TEXTS
 from grammar.discourse import Discourse
 from grammar.errors import NotUnderstood
 from grammar.language import Language, load_language
 from grammar.lexicon import Lexicon
 from grammar.meanings.amounts import moment_said, time_meant
 from grammar.meanings.requests import A_MINUTE
+from grammar.pieces import leaves
 from grammar.plan import Call, Plan, Remember, Step, Text
 from grammar.planning.by_the_clock import by_the_clock
 from grammar.reader import SentenceReader
@@ -104,7 +106,26 @@ def said_otherwise(
                 when = d.build(said.node)
                 yield said.rest, Request("schedule", sentence=said.rest, part=said.part, when=when)
         elif said.node.means in _MOMENTS and not text.startswith(said.part):
+            if _of_a_text(reader, said):
+                continue  # "tell Bob the meeting is at noon, ..."
             yield f"{said.part} {said.rest}", None
+
+
+def _of_a_text(reader: SentenceReader, said: Said) -> bool:
+    """Whether the words stand within words to be spoken, or go on with them."""
+    rest = SentenceReader(said.rest, reader.lexicon, reader.language, Context())
+    try:
+        tree = rest.chart().best("utterance")
+    except (TooMuch, RecursionError):
+        return True
+    at = said.node.start
+    parted = at == 0 or reader.tokens[at - 1].kind == "mark"
+    return tree is not None and any(
+        leaf.slot in TEXTS
+        and leaf.start < at
+        and (at < leaf.end or (at == leaf.end and not parted))
+        for leaf in leaves(tree)
+    )
 
 
 def begun_by(text: str, lexicon: Lexicon, language: str, plan: Plan) -> Later | None:
