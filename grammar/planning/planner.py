@@ -17,6 +17,7 @@ from typing import Protocol
 from grammar.plan import Plan
 from grammar.planning.turn import Turn
 from grammar.requests import Request
+from grammar.trace import Read
 from grammar.understanding import Context
 
 
@@ -36,6 +37,8 @@ class Draft:
     """The logarithm of how likely a language model found it, for all of its tokens."""
     surest: float = 1.0
     """How likely it found the least likely of them."""
+    reading: tuple[Read, ...] = ()
+    """Which words rules have read as what."""
 
 
 @dataclass(frozen=True)

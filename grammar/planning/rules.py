@@ -36,7 +36,8 @@ class RulesPlanner:
         if understood.plan is not None:
             plan = heeded(turn, understood.plan)
             context = replace(understood.context, plan=plan)
-            return Drafts((Draft(plan, NAME, understood.confidence, context, exact=True),))
+            sure, reading = understood.confidence, tuple(understood.parts)
+            return Drafts((Draft(plan, NAME, sure, context, exact=True, reading=reading),))
         if understood.status == "rejected" and (halt := _halt(turn)) is not None:
             return Drafts((halt,))
         message, suggestions = understood.message or "", tuple(understood.suggestions)

@@ -3,7 +3,9 @@
 What planners think of themselves is not comparable, and too sure. So what is known of a draft (how
 its planner liked it, how many votes it has, what the check doubts, what it leaves unused) is
 weighed by a logistic regression, fitted on sentences whose outcome is known and that nobody has
-learned from: `python -m nl2robot.training.planner.calibrate`.
+learned from: `python -m nl2robot.training.planner.calibrate`. Of a draft of the rules, what they
+have read tells most: some rules are nearly always right, others often take words for something
+else.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from grammar.checking.words import content
+from grammar.planning.planner import Draft
 from grammar.planning.turn import Turn
 from nl2robot.paths import PACKAGED
 
@@ -23,6 +26,11 @@ if TYPE_CHECKING:  # trying drafts needs the sandbox, which takes a moment to lo
     from nl2robot.deliberation.voting import Count, Vote
 
 WEIGHTS: Final = PACKAGED / "confidence.json"
+READ: Final = "read: "
+"""Before the name of a meaning, or of a slot, that a reading has."""
+_TEXT: Final = "text"
+_CORRECTED: Final = "“"
+"""Begins what stands in a reading for a word that was put right."""
 
 
 def features(turn: Turn, vote: Vote, count: Count) -> dict[str, float]:
@@ -56,6 +64,22 @@ def features_alone(turn: Turn, considered: Considered) -> dict[str, float]:
         "own": min(3, len(checked.own)),
         "branches": program.count("if ") + program.count("for "),
         "remarks": len(draft.plan.background),
+    } | _features_of_reading(turn, draft)
+
+
+def _features_of_reading(turn: Turn, draft: Draft) -> dict[str, float]:
+    """What is known of how rules have read the sentence."""
+    if not draft.reading:
+        return {}
+    texts = [len(each.words.split()) for each in draft.reading if each.meaning == _TEXT]
+    read = {each.meaning for each in draft.reading if not each.meaning.startswith(_CORRECTED)}
+    return {
+        "sure": draft.probability,
+        "parts": math.log1p(len(draft.reading)),
+        "texts": len(texts),
+        "text words": math.log1p(sum(texts)),
+        "marks": sum(token.kind == "mark" for token in turn.tokens),
+        **{f"{READ}{each}": 1.0 for each in sorted(read)},
     }
 
 

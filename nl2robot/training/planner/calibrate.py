@@ -10,8 +10,10 @@ it goes to `nl2robot/data/confidence.json` (`nl2robot.deliberation.confidence`).
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import random
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Final
@@ -20,63 +22,102 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
-from nl2robot.deliberation.confidence import WEIGHTS
+from grammar.language import load_language
+from grammar.planning.planner import Drafts, Watch
+from grammar.planning.turn import Turn
+from grammar.understanding import Context
+from nl2robot.deliberation.confidence import READ, WEIGHTS, features_alone
+from nl2robot.deliberation.considering import consider
 from nl2robot.deliberation.deciding import ACCEPTED
+from nl2robot.deliberation.sufficing import SURE_OF_RULES
+from nl2robot.knowledge import Knowledge
 from nl2robot.training.planner.corpus import files, load
 from nl2robot.training.planner.evaluate import Row, measure, scores, table
 from nl2robot.training.planner.examples import is_held_out
 from nl2robot.training.planner.export import file_digest
 from nl2robot.translate.planners import installed_model, learned, planner
+from sim.world.loading import load_world
+
+TYPED: Final = Path(__file__).with_name("typed.jsonl")
 
 USED: Final = {
     "model": ("surest", "score", "branches", "hardly asked"),
-    "grammar": ("lines", "words", "unused words", "unasked", "unheeded", "branches", "remarks"),
+    "grammar": (
+        *("lines", "words", "unused words", "unasked", "unheeded", "branches", "remarks"),
+        *("hardly asked", "own", "sure", "parts", "texts", "text words", "marks"),
+    ),
 }
-"""Features that count, chosen one by one as long as the probabilities of drafts that they were not
-fitted to became truer. Of rules there are more, since they have learned from none of the corpus."""
+"""Features that count. Those of the model were chosen one by one as long as the probabilities of
+drafts that they were not fitted to became truer; of rules, that have learned from none of the
+corpus, what they have read counts besides (`READ`), where it is not too rare to tell."""
+OFTEN_ENOUGH: Final = 8
+"""Drafts in which something was read, for it to count."""
 RIGHT_IN_ANOTHER_WAY: Final = 0.19
 """The share of drafts of the model that do something else than the author's program and are right:
 nine of 47 that somebody has read. Of rules, that do less of what was not said, none is assumed."""
-PULL: Final = 5.0
+PULL: Final = {"model": 5.0, "grammar": 40.0}
 """How strongly weights are drawn towards nothing, of standardised features."""
+OF_THE_CORPUS: Final = 0.5
+"""What a draft counts for that was compared with the author's program, where one that somebody has
+read counts for 1: whatever does something else than the author's program is counted as wrong, and
+the corpus has more long orders than people have."""
 
 
-def fitted(
-    measured: Sequence[Row], used: Sequence[str], also_right: float = 0.0
-) -> dict[str, float]:
-    """A logistic regression of whether the first vote was right; of those that do something else
-    than the author's program, a share is right, too."""
-    x = np.array([[each["features"][name] for name in used] for each in measured])
-    y = np.array([1.0 if each["right"][0] else also_right for each in measured])
+def fitted(measured: Sequence[Row], planner: str) -> dict[str, float]:
+    """A logistic regression of whether the first vote was right."""
+    used = _used(measured, planner)
+    x = np.array([[each["features"].get(name, 0.0) for name in used] for each in measured])
+    y = np.array([_right(each, planner) for each in measured])
+    counts = np.array(
+        [
+            1.0 if each.get("read") else OF_THE_CORPUS if planner == "grammar" else 1.0
+            for each in measured
+        ]
+    )
     middle, wide = x.mean(0), x.std(0) + 1e-9
     standard = (x - middle) / wide
 
-    def loss(weights: NDArray[np.float64]) -> float:
+    def loss(weights: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]:
         total = standard @ weights[1:] + weights[0]
-        own = np.logaddexp(0, total) - y * total
-        return float(own.sum() + PULL * (weights[1:] ** 2).sum() / 2)
+        own = counts * (np.logaddexp(0, total) - y * total)
+        drawn = PULL[planner] * weights[1:]
+        steep = counts * (1 / (1 + np.exp(-total)) - y)
+        slope = np.concatenate([[steep.sum()], standard.T @ steep + drawn])
+        return float(own.sum() + (drawn * weights[1:]).sum() / 2), slope
 
-    weights = minimize(loss, np.zeros(len(used) + 1)).x
+    weights = minimize(loss, np.zeros(len(used) + 1), jac=True, method="L-BFGS-B").x
     slopes = weights[1:] / wide
     plain = {name: round(float(slope), 5) for name, slope in zip(used, slopes, strict=True)}
     return {"bias": round(float(weights[0] - (slopes * middle).sum()), 5), **plain}
 
 
+def _used(measured: Sequence[Row], planner: str) -> list[str]:
+    """The names of the features that count."""
+    seen = Counter(name for each in measured for name in each["features"])
+    read = sorted(name for name in seen if name.startswith(READ) and seen[name] >= OFTEN_ENOUGH)
+    return [*USED[planner], *(read if planner == "grammar" else ())]
+
+
+def _right(each: Row, planner: str) -> float:
+    """How likely the first vote was right; of those that do something else than the author's
+    program, a share is right, too."""
+    also_right = RIGHT_IN_ANOTHER_WAY if planner == "model" else 0.0
+    return 1.0 if each["right"][0] else also_right
+
+
 def probability(weights: dict[str, float], each: Row) -> float:
-    known = each["features"]
-    total = sum(weight * known.get(name, 1.0) for name, weight in weights.items())
+    known = {"bias": 1.0, **each["features"]}
+    total = sum(weight * known.get(name, 0.0) for name, weight in weights.items())
     return float(1 / (1 + np.exp(-total)))
 
 
-def tried(measured: Sequence[Row], used: Sequence[str], also_right: float) -> Iterator[str]:
+def tried(measured: Sequence[Row], planner: str) -> Iterator[str]:
     """How true the probabilities are on halves that they were not fitted to."""
     halves = measured[::2], measured[1::2]
     told = [
-        (
-            probability(fitted(learned, used, also_right), each),
-            1.0 if each["right"][0] else also_right,
-        )
+        (probability(weights, each), _right(each, planner))
         for learned, other in (halves, halves[::-1])
+        for weights in (fitted(learned, planner),)
         for each in other
     ]
     for low, high in ((0.0, 0.3), (0.3, 0.5), (0.5, 0.7), (0.7, 0.85), (0.85, 1.01)):
@@ -85,8 +126,30 @@ def tried(measured: Sequence[Row], used: Sequence[str], also_right: float) -> It
             said = sum(p for p, _ in mine) / len(mine)
             was = sum(right for _, right in mine) / len(mine)
             yield f"said {said:.2f}, were right {was:.2f} ({len(mine)})"
-    shown = [right for p, right in told if p >= ACCEPTED]
-    yield f"shown from {ACCEPTED} on: {sum(shown):.0f} right, {len(shown) - sum(shown):.0f} wrong"
+    accepted = {"model": ACCEPTED, "grammar": SURE_OF_RULES}[planner]
+    shown = [right for p, right in told if p >= accepted]
+    yield f"shown from {accepted} on: {sum(shown):.0f} right, {len(shown) - sum(shown):.0f} wrong"
+
+
+def read_by_somebody() -> list[Row]:
+    """What rules made of sentences that people have typed, where it is what somebody has judged by
+    reading it (`typed.jsonl`): what became something else since is not known to be right."""
+    rules, worlds = planner("grammar"), functools.cache(_world)
+    rows: list[Row] = []
+    for line in TYPED.read_text("utf-8").splitlines():
+        typed = json.loads(line)
+        lexicon = worlds(typed["world"]).lexicon(typed["language"])
+        turn = Turn(typed["say"], lexicon, load_language(typed["language"]), Context())
+        answer = rules.plan(turn, Watch())
+        made = consider(turn, answer.drafts[0]) if isinstance(answer, Drafts) else None
+        if made is not None and made.program == typed["program"]:
+            known = features_alone(turn, made)
+            rows.append({"features": known, "right": [typed["right"]], "read": True})
+    return rows
+
+
+def _world(name: str) -> Knowledge:
+    return Knowledge(load_world(name, names_only=True))
 
 
 def _learned() -> str:
@@ -114,11 +177,14 @@ def main() -> None:
         measured = [*measured, *also]
     drafted = [each for each in measured if each["outcome"] == "drafts"]
     random.Random(1).shuffle(drafted)
-    used = USED[given.planner]
-    also_right = RIGHT_IN_ANOTHER_WAY if given.planner == "model" else 0.0
-    print(*tried(drafted, used, also_right), sep="\n")
+    if given.planner == "grammar":
+        typed = read_by_somebody()
+        print(f"{len(typed)} drafts for typed sentences, {sum(r['right'][0] for r in typed)} right")
+        drafted = [*drafted, *typed]
+        random.Random(1).shuffle(drafted)
+    print(*tried(drafted, given.planner), sep="\n")
     known = json.loads(WEIGHTS.read_text("utf-8"))
-    known[given.planner] = fitted(drafted, used, also_right)
+    known[given.planner] = fitted(drafted, given.planner)
     WEIGHTS.write_text(json.dumps(known, indent=2) + "\n", "utf-8")
 
 
