@@ -13,7 +13,7 @@ from grammar.naming import naming
 from grammar.plan import Plan
 from grammar.planning.planner import Draft, Question, Refusal
 from grammar.planning.turn import Turn
-from nl2robot.deliberation.confidence import confidence
+from nl2robot.deliberation.confidence import confidence, confidence_alone
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.knowledge import Knowledge
 
@@ -21,6 +21,8 @@ ACCEPTED: Final = 0.6
 """From this probability on a program is shown as understood."""
 ASKED: Final = 0.15
 """From this one on it is asked whether it was meant."""
+LIKELY: Final = 0.5
+"""From this one on a draft of the rules is shown of which no other planner knows anything."""
 CLOSE: Final = 0.6
 """A second that has so much of the votes of the first makes a question of them."""
 LONGEST: Final = 160
@@ -100,7 +102,8 @@ def _only(turn: Turn, draft: Draft) -> Chosen | Refusal:
 def between(turn: Turn, exact: Chosen, other: Chosen | Open | Refusal) -> Chosen | Open | Refusal:
     """What comes of a draft of an exact planner that may be wrong, and of what another one says: if
     that is the same, it is right. Otherwise the other one is believed, if it is sure; else it is
-    asked which of the two is meant."""
+    asked which of the two is meant. Where the other one knows nothing, the draft is shown if it is
+    likely to be right, and else asked about."""
     from nl2robot.deliberation.voting import same
 
     match other:
@@ -110,6 +113,9 @@ def between(turn: Turn, exact: Chosen, other: Chosen | Open | Refusal) -> Chosen
             if same(turn, exact.considered, theirs.considered):
                 return exact
             return _either(turn, theirs, exact) or other
+        case Refusal(final=False):
+            likely = confidence_alone(turn, exact.considered) >= LIKELY
+            return exact if likely else _really(turn, exact) or other
         case _:
             return other
 

@@ -308,7 +308,8 @@ def _planned(
     if isinstance(by_model, Refusal) and not by_model.final:
         if by_model.absent and isinstance(decided, Refusal):
             decided = replace(decided, message=f"{decided.message} {by_model.message}")
-        return turn, decided  # the rules say which word they do not know
+        if by_model.absent or isinstance(decided, Refusal):
+            return turn, decided  # the rules say which word they do not know
     if isinstance(decided, Chosen) and not isinstance(by_model, Question | Service):
         return turn, do(between, turn, decided, by_model)
     return turn, by_model
