@@ -9,13 +9,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grammar.language import load_language
+from grammar.planning.planner import Drafts, Watch
+from grammar.planning.rules import RulesPlanner
 from nl2robot.deliberation import confidence as module
-from nl2robot.deliberation.confidence import WEIGHTS, confidence, features
+from nl2robot.deliberation.confidence import READ, WEIGHTS, confidence, features, features_alone
 from nl2robot.deliberation.considering import Considered, consider
 from nl2robot.deliberation.voting import Count, Vote
 from tests.deliberation.drafting import draft, turn
 
 TURN = turn("ward a should get a wave, would you say?")
+TURN_OF_RULES = turn("tell Alice that lunch is ready")
 
 
 def considered(probability: float = 0.5, score: float = -1.0, surest: float = 0.9) -> Considered:
@@ -67,10 +71,35 @@ def test_what_is_known_tells_drafts_apart() -> None:
 
 def test_the_weights_that_are_delivered_are_numbers_for_what_is_known() -> None:
     vote = Vote((considered(),), 0.5)
-    names = {"bias", *features(TURN, vote, Count((vote,), ()))}
+    names = {"bias", *features(TURN, vote, Count((vote,), ()))} | {*features_alone(TURN, read())}
     for weights in json.loads(WEIGHTS.read_text("utf-8")).values():
-        assert {*weights} <= names
+        assert {name for name in weights if not name.startswith(READ)} <= names
+        assert {name.removeprefix(READ) for name in weights if name.startswith(READ)} <= readable()
         assert all(math.isfinite(weight) for weight in weights.values())
+
+
+def read() -> Considered:
+    """A draft of the rules."""
+    answer = RulesPlanner().plan(TURN_OF_RULES, Watch())
+    assert isinstance(answer, Drafts)
+    made = consider(TURN_OF_RULES, answer.drafts[0])
+    assert made is not None
+    return made
+
+
+def readable() -> set[str]:
+    """All that a reading may have: what rules mean, the methods, and the slots."""
+    networks = [load_language(each).network for each in ("en", "de", "fr")]
+    means = {each.means for network in networks for each in network.productions if each.means}
+    return means.union(*(network.names for network in networks))
+
+
+def test_what_rules_have_read_is_known_of_their_draft() -> None:
+    known = features_alone(TURN_OF_RULES, read())
+    assert known[f"{READ}say_that"] == known[f"{READ}person_name"] == 1
+    assert known["texts"] == 1
+    assert known["text words"] == pytest.approx(math.log1p(3))
+    assert f"{READ}bring" not in known
 
 
 _NUMBERS = st.floats(-1e6, 1e6)

@@ -183,6 +183,20 @@ def test_a_planner_that_is_sure_is_believed_against_one_that_is_not() -> None:
     assert between(turn(text), rules, model) is model
 
 
+@pytest.mark.parametrize(("likely", "shown"), [(0.7, True), (0.3, False)])
+def test_where_the_other_knows_nothing_what_is_unlikely_is_asked(
+    likely: float, shown: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = "ward a should get a wave"
+    rules = of_rules(text, 'goto("ward a")\ngesture("wave")\n')
+    monkeypatch.setattr(deciding, "confidence_alone", lambda *known: likely)
+    found = between(turn(text), rules, Refusal("What is a wave?"))
+    assert (found is rules) is shown
+    if not shown:
+        assert isinstance(found, Open)
+        assert [offer.chosen.plan for offer in found.offers] == [rules.plan]
+
+
 # --- refusals
 
 
