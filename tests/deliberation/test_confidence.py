@@ -91,7 +91,7 @@ def readable() -> set[str]:
     """All that a reading may have: what rules mean, the methods, and the slots."""
     networks = [load_language(each).network for each in ("en", "de", "fr")]
     means = {each.means for network in networks for each in network.productions if each.means}
-    return means.union(*(network.names for network in networks))
+    return means | {name.strip("{}") for network in networks for name in network.names}
 
 
 def test_what_rules_have_read_is_known_of_their_draft() -> None:
