@@ -90,6 +90,8 @@ class Words:
     definite: frozenset[str]
     """Words that speak of something known: "the total", "his mind"."""
     that: frozenset[str]
+    told: frozenset[str]
+    """Of these: those with which, behind a comma, only a message begins."""
     messages: Phrases
     """How a message begins that is no whole sentence: "happy birthday"."""
     wishes: Phrases
@@ -164,6 +166,7 @@ def words_for(language: Language) -> Words:
         addressing=single("addressing"),
         definite=single("definite"),
         that=single("that"),
+        told=single("told"),
         messages=phrases("messages"),
         wishes=phrases("wishes"),
         greetings=phrases("greetings"),
@@ -285,6 +288,8 @@ class Judge:
             return None
         if self.tokens[start].norm in self.words.never_first | self.joins or self.given_to(start):
             return doubt(start, "cannot_say")
+        if spoken and self.told_behind(start, end):  # "if he is there, that lunch is ready"
+            return doubt(start, "said_or_done")
         greeted = self.complete_greeting(start) if spoken else 0
         if 0 < greeted < end - start:  # "good morning to everyone who comes": to whom
             return doubt(start + greeted, "said_or_done")
@@ -300,6 +305,13 @@ class Judge:
         if spoken and self.asks(start, end):
             return doubt(start, "cannot_say")
         return self.fragment(node, start, end, doubt)
+
+    def told_behind(self, start: int, end: int) -> bool:
+        """Whether what is to be told begins behind a comma, and an aside stands before it."""
+        return any(
+            self.tokens[at - 1].norm == COMMA and self.tokens[at].norm in self.words.told
+            for at in range(start + 2, end)
+        )
 
     def has_infinitive(self, start: int, end: int) -> bool:
         """Whether what somebody is asked to do begins with a verb, in a language whose infinitives

@@ -34,7 +34,16 @@ from grammar.plan import Ask, Call, Plan, Text, Value
 from grammar.planning.by_the_clock import by_the_clock
 from grammar.plausible import implausible
 from grammar.prepared import prepared
-from grammar.refusals import forbidden, is_half, no_thing, not_said, out_of_range, strange, why_not
+from grammar.refusals import (
+    forbidden,
+    is_half,
+    misturned,
+    no_thing,
+    not_said,
+    out_of_range,
+    strange,
+    why_not,
+)
 from grammar.reminders.reminding import reminding
 from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
@@ -164,6 +173,10 @@ class SentenceReader:
         if impossible is not None:
             message, thing = impossible
             return replace(rejected(self.text, message, self.context), unclear=thing)
+        wrong = misturned(plan, self.language, self.text)
+        if wrong is not None:
+            message = self.language.phrase("not_understood", part=wrong)
+            return replace(rejected(self.text, message, self.context), unclear=wrong)
         hurtful = not_said(plan, self.lexicon, self.language)
         if hurtful is not None:
             return rejected(self.text, self.language.phrase(hurtful), self.context)

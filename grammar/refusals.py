@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import functools
 import itertools
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from typing import Final
 
@@ -98,6 +99,22 @@ def not_said(plan: Plan, lexicon: Lexicon, language: Language) -> str | None:
             phrase = next(_found(language.tokens_of(text.value), signs_of), None)
             if phrase is not None:
                 return phrase
+    return None
+
+
+def misturned(plan: Plan, language: Language, text: str) -> str | None:
+    """A text of the plan that nobody says so, for a pronoun or a verb in it was not turned to who
+    hears it (`misturned` in the language's data). What the sentence has word by word is not
+    judged."""
+    patterns = language.speech.get("misturned", ())
+    for step in nodes(plan.steps):
+        if not isinstance(step, Call | Ask) or step.method not in SPOKEN:
+            continue
+        for said in nodes(step.arguments):
+            if not isinstance(said, Text) or f'"{said.value}"' in text:
+                continue
+            if any(re.search(pattern, said.value) for pattern in patterns):
+                return said.value
     return None
 
 

@@ -8,7 +8,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.errors import NotUnderstood
 from grammar.meanings.finding import speak_to
-from grammar.meanings.persons import guest_for
+from grammar.meanings.persons import guest_for, is_me, person_me
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
@@ -27,7 +27,11 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     d.answers = replace(d.answers, message=node)
     if part is not None and verb_never(d, part.start):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(part.start, part.end)))
-    kinds = ("to_you_asked", "to_you_who", "to_you")
+    if node.production.fixed.get("to_me"):
+        person = person_me(d, node)
+    # "remind me to take my pills": what is mine is theirs who will hear it
+    of_speaker = ["to_you_speaker"] if is_me(person) else []
+    kinds = [*of_speaker, "to_you_asked", "to_you_who", "to_you"]
     you = next(each for each in kinds if each in d.language.speech)
     text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
     if "wished" in node.parts:  # "qu'elle vienne ici"

@@ -38,6 +38,7 @@ from grammar.plan import (
     Value,
 )
 from grammar.tidy import nodes
+from grammar.wordforms import singular
 
 
 @meaning("go")
@@ -384,6 +385,9 @@ def wait(d: Discourse, node: Node) -> Steps:
 def wait_for(d: Discourse, node: Node) -> Steps:
     d.get(node, "from")  # "wait in Bob's office until he comes"
     thing = noun_of(d, node)
+    times = d.language.numbers.get("units_of_time", {})
+    if any(singular(each, d.language) in times for each in d.language.tokens_of(thing.text)):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     timeout = d.get(node, "seconds")
     announced = announced_one(d, node, thing.place) if timeout is None else None
     if announced is not None:

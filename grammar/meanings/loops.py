@@ -30,6 +30,7 @@ from grammar.meanings.waiting import (
     looked_for_at_pace,
     looking_up,
     there_first,
+    told_with,
     wait_until,
 )
 from grammar.meanings.whereabouts import looked_on_in
@@ -188,6 +189,12 @@ def loop(d: Discourse, node: Node) -> Steps:
     """Steps and how often they are done: "every ten minutes until five", "three times"."""
     part = node.parts["steps"]
     if "loop" in node.parts:
+        behind = node.parts["loop"]
+        paced = isinstance(behind, Node) and "pause" in behind.parts
+        told = told_with(part, behind) if paced else None
+        if told is not None:
+            whole: Steps = d.build(told)
+            return whole
         often: Node = d.get(node, "loop")
     else:  # "go there every hour and ..."
         assert isinstance(part, Node)

@@ -107,6 +107,9 @@ def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
         return sentence_form(_said_of_itself(d, part, ordered))
     if of_robot and reports:
         ordered = _said_by_robot(d, ordered)
+    unsure = d.language.speech.get("unsure_told")
+    if unsure and person is not None and not person.me and re.search(unsure, ordered):
+        raise NotUnderstood(d.language.phrase("not_understood", part=said))
     return sentence_form(ordered)
 
 
@@ -155,7 +158,7 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
         data = {**data, **NOBODY_ELSE, **data["speaker"]}
     guests = guest_in(d, person, start, end)
     pieces: list[str] = []
-    subject = False
+    subject = subject_of_clause = False
     for at, original, space in _written(d, start, end):
         tokens = [token.norm for token in d.tokens[at : at + _parts(d, at, end)]]
         changed = list(tokens)
@@ -166,7 +169,13 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
                 changed[number] = word if word in data["unchanged"] else turned
                 subject = False
             clitic = at > start and _before_verb(d, at, end, data)
-            reflexive = data.get("reflexives", {}).get(word) if subject else None
+            if d.tokens[at].norm in data["clause_joins"] or d.tokens[at].kind == "mark":
+                subject_of_clause = False
+            # "il se lave", "il doit se laver"
+            of_you = subject or (
+                subject_of_clause and _infinitive_follows(d, at + number + 1, data)
+            )
+            reflexive = data.get("reflexives", {}).get(word) if of_you else None
             you = (
                 reflexive
                 or data["you"].get(word)
@@ -200,7 +209,10 @@ def addressed(d: Discourse, start: int, end: int, person: Thing | None) -> str:
             )
             if you and not impersonal and not another:
                 changed[number] = data["possessives"][word] if possessed else you
-                subject = subject or word in data["subjects"]
+                before_it = d.tokens[at + number - 1].norm
+                stands_alone = before_it in data.get("prepositions", ())  # "chez elle ce soir"
+                subject = subject or (word in data["subjects"] and not stands_alone)
+                subject_of_clause = subject_of_clause or subject
         words = " ".join(changed)
         if begins_sentence(d, start, at):
             words = capital(words)
@@ -337,12 +349,16 @@ def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bo
     """Whether the word here is an object before its verb, and no article: "Bob la cherche", "le
     médecin va la recevoir"."""
     before = d.tokens[at - 1].norm
+    if before in data.get("negations", ()):  # "je ne peux pas l'aider"
+        before = d.tokens[at - 2].norm
     if before in data.get("subjects_before", ()):
         return True
     if d.tokens[at].norm not in data.get("objects", {}) or at + 1 >= end:
         return False
     if before in data.get("modals", ()):
-        return re.search(d.language.speech["infinitive"], d.tokens[at + 1].norm) is not None
+        infinitive = d.tokens[at + 1].norm
+        is_noun = infinitive in data.get("nouns_in_er", ())  # "veut le dossier"
+        return not is_noun and re.search(d.language.speech["infinitive"], infinitive) is not None
     if _is_somebody(d, d.tokens[at - 1], data):
         return True
     finite = d.language.speech.get("base_forms", {})  # "le patient de la chambre 3 l'appelle"
@@ -351,11 +367,23 @@ def _before_verb(d: Discourse, at: int, end: int, data: Mapping[str, Any]) -> bo
     return verb and here.kind != "mark" and before not in d.language.closed
 
 
+def _infinitive_follows(d: Discourse, at: int, data: Mapping[str, Any]) -> bool:
+    """Whether an infinitive stands here, with at most little words before it: "s'en aller"."""
+    while at < len(d.tokens) and d.tokens[at].norm in data["between"]:
+        at += 1
+    pattern = d.language.speech.get("infinitive")
+    return (
+        pattern is not None and at < len(d.tokens) and bool(re.search(pattern, d.tokens[at].norm))
+    )
+
+
 def _of_others(d: Discourse, person: Thing, word: str, data: Mapping[str, Any]) -> bool:
     """Whether a pronoun stands for several who were asked before, or somebody whom nobody knows:
     "tell Alice that they agree", "wait for a visitor and tell Alice that they are here"."""
     several = word in data.get("plural", ())
     alone = person.known and person.group is None and not person.plural
+    if alone and word in data.get("never_one", ()):
+        return True
     asked = [each.who for each in d.answers.surveys if isinstance(each.who, Recall)]
     others = (
         d.people.others or d.people.visitor is not None or any(who != person.value for who in asked)

@@ -44,7 +44,9 @@ def thing(d: Discourse, node: Node) -> Thing:
             raise unknown_person(d, d.words(node.start, node.end), node)
     else:
         one, known, many = str(node.production.fixed.get("what", "object")), False, False
-        if "superlative" in node.parts and d.scene.thing is not None:
+        if node.production.fixed.get("such"):
+            one = such_as(d, node)
+        elif "superlative" in node.parts and d.scene.thing is not None:
             one = d.scene.thing.noun or one  # "the biggest"
     count = d.get(node, "number") if node.production.rule == "thing" else None
     found = replace(
@@ -76,6 +78,13 @@ def best_of_those(d: Discourse, node: Node, found: Thing) -> Thing:
     return replace(
         found, place=those.place, furniture=those.furniture, preposition=those.preposition
     )
+
+
+def such_as(d: Discourse, node: Node) -> str:
+    """What was spoken of last, without its adjectives: "water bottle", after "the green water
+    bottle"."""
+    adjectives = d.language.lists.get("attribute", {}).keys()
+    return " ".join(each for each in spoken_of(d, node).text.split() if each not in adjectives)
 
 
 def is_best(d: Discourse, thing: Thing) -> bool:

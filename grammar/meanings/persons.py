@@ -51,6 +51,8 @@ def unknown_person(d: Discourse, words: str, node: Node) -> NotUnderstood:
 def person_kind(d: Discourse, node: Node) -> Thing:
     """ "the visitor waving in the lobby", "a nurse", "this gentleman"."""
     kind = str(d.get(node, "kind_of_person", ANYONE))
+    if "kind_of_person" in node.parts:
+        only_somebody(d, node)
     found = replace(
         by_furniture(d, described(d, kind, node)),
         person=True,
@@ -65,6 +67,15 @@ def person_kind(d: Discourse, node: Node) -> Thing:
     found = where_spoken_of(d, node, found)
     d.scene = d.scene.speaking_of_person(found)
     return found
+
+
+def only_somebody(d: Discourse, node: Node) -> None:
+    """Refuse what is to be done to nobody: "dis à personne que je suis parti"."""
+    nobody = d.tokens[node.start].norm in d.language.words_called("nobody")
+    to = node.start == 1 or d.tokens[node.start - 1].norm in d.language.words_called("to_nobody")
+    if nobody and node.start > 0 and to:
+        words = d.words(max(0, node.start - 1), node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=words))
 
 
 def where_spoken_of(d: Discourse, node: Node, found: Thing) -> Thing:

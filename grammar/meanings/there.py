@@ -63,6 +63,8 @@ def is_found(d: Discourse, node: Node) -> Condition:
 
 def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
     thing = noun_of(d, node)
+    if node.production.fixed.get("at_place") and d.scene.at is None:  # "si Paul y est": where?
+        raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     host = host_of_visit(d, thing)
     if host is not None:  # "take him to Clara's office. If she is not there, ..."
         d.names(host.text)

@@ -10,6 +10,7 @@ import msgspec
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
+from grammar.freetext import words_for
 from grammar.meanings.arrivals import may_be_another, names_somebody
 from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
 from grammar.meanings.branches import if_
@@ -48,6 +49,8 @@ from grammar.plan import (
 )
 from grammar.tidy import LOOPS, gives, nodes
 
+TOLD: Final = frozenset({"ask_to", "say_that"})
+"""Meanings whose text is passed on to somebody."""
 LOOK_EVERY: Final = 10
 """Seconds between two looks at a condition that is waited for."""
 
@@ -82,13 +85,17 @@ def when(d: Discourse, node: Node) -> Steps:
     if waited_in_time(d) and not node.production.fixed.get("always"):
         whether: Steps = if_(d, node)
         return whether
+    whole = told_with(node.parts["then"], node.parts["condition"])
+    always = bool(node.production.fixed.get("always"))
+    if whole is not None and not always and of_others(d, whole, node.parts["condition"]):
+        once: Steps = d.build(whole)
+        return once
     if asked_when(d, node) is not None and tells_only(node.parts["then"]):
         told: Steps = d.build(node.parts["then"])
         return told
     if stops_asking(d, node) and not node.production.fixed.get("always"):
         return as_soon_as_answered(d, node)
     about_answer = what_it_means(node.parts["condition"]) in ABOUT_ANSWERS
-    always = bool(node.production.fixed.get("always"))
     in_turn = bool(d.answers.surveys) and asked_without_end(d, d.answers.surveys[-1])
     if about_answer and d.answers.last is not None and (in_turn or not always):
         return if_(d, node)  # "when he says yes", of somebody who was asked: he has answered
@@ -129,6 +136,49 @@ def when(d: Discourse, node: Node) -> Steps:
     if each or is_greeter(d, node, condition, body):
         return each_time(before, condition, body)
     return [*awaited(before, condition), *body]
+
+
+def told_with(part: Leaf | Node, behind: Leaf | Node) -> Node | None:
+    """What is told to somebody with what stands behind it, which is a part of it then: "tell Bob to
+    take two pills every four hours", "tell Bob that we close when Victor comes". None if nothing is
+    told there."""
+    if isinstance(part, Leaf):
+        return None
+    told = part.parts.get("text")
+    if part.means in TOLD and isinstance(told, Leaf) and told.slot == "text":
+        if told.end > behind.start:
+            return None
+        return _longer(part, {"text": replace(told, end=behind.end)})
+    name = max(part.parts, key=lambda each: part.parts[each].end, default=None)
+    last = None if name is None else told_with(part.parts[name], behind)
+    return None if name is None or last is None else _longer(part, {name: last})
+
+
+def of_others(d: Discourse, told: Node, condition: Leaf | Node) -> bool:
+    """Whether a condition behind a message speaks neither of what the robot sees nor of whoever is
+    told: "tell Bob that lunch is ready when you see him", "... when he comes"."""
+    if words_for(d.language).addressing.intersection(d.norms(condition.start, condition.end)):
+        return False
+    while told.means not in TOLD:
+        told = max((each for each in told.parts.values() if isinstance(each, Node)), key=_end)
+    listener, who = told.parts.get("person_ref"), condition
+    while isinstance(who, Node) and who.means != "person_pronoun" and who.parts:
+        who = min(who.parts.values(), key=lambda each: each.start)
+    if not isinstance(who, Node):
+        return names_somebody(condition)
+    gender = d.gender(who.start, who.end)
+    if listener is None or gender is None:
+        return False
+    return d.gender_of(d.tokens[listener.end - 1].norm, gender) != gender
+
+
+def _end(node: Node) -> int:
+    return node.end
+
+
+def _longer(node: Node, parts: dict[str, Leaf | Node]) -> Node:
+    """A node that ends with some other parts."""
+    return replace(node, end=max(each.end for each in parts.values()), parts=node.parts | parts)
 
 
 ANY: Final = Call("wait_for", {"thing": Text(ANYONE)})
