@@ -134,6 +134,26 @@ def unspoken(
     ]
 
 
+def no_nouns(
+    plan: Plan, tokens: tuple[Token, ...], language: Language, known: Set[str]
+) -> list[str]:
+    """The words that things are called by in a plan and that are no nouns: a negation, or what is
+    written small in a text that writes nouns with capitals."""
+    negations = language.speech.get("weighty", {}).get("negations", ())
+    capitals = language.speech.get("capital_nouns") and any(each.capital for each in tokens[1:])
+    said = {token.norm: token for token in tokens if token.kind == "word"}
+    found: list[str] = []
+    for step in nodes(plan.steps):
+        thing = step.arguments.get("thing") if isinstance(step, Call | Ask) else None
+        words = language.tokens_of(thing.value) if isinstance(thing, Text) else ()
+        head = said.get(words[-1]) if words else None
+        if words and words[0] in negations:
+            found.append(words[0])
+        elif head is not None and capitals and not head.capital and head.norm not in known:
+            found.append(head.spelled or head.norm)
+    return found
+
+
 def unheeded(tree: Node, tokens: tuple[Token, ...], language: Language) -> list[str]:
     """Words for how something is to be done that change nothing ("quickly"), as they were said:
     no name and no text has them."""

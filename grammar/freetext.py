@@ -29,6 +29,7 @@ REQUESTED: Final = frozenset({"ask_to"})
 ANSWERS: Final = frozenset({"option_words", "said_so"})
 INFINITIVE_WITHIN: Final = 5
 """Words: "de ne pas le lui dire"."""
+NOBODY: Final = Phrases(())
 QUIET: Final = frozenset({"remark", "remark_where", "remark_name", "refused"})
 """Meanings whose text asks for nothing."""
 
@@ -96,12 +97,18 @@ class Words:
     """How a message begins that is no whole sentence: "happy birthday"."""
     wishes: Phrases
     """What sounds like an order and is none: "sleep well", "welcome to"."""
+    unsaid: Phrases
+    """How what is not to be said begins: "rather not", "neither"."""
+    instead: Phrases
+    """What stands before what is not said: "rather than"."""
     greetings: Phrases
     """What is complete in itself, so that "to ...", "in ..." behind it are not spoken."""
     not_greeting: frozenset[str]
     """What goes with a greeting as little as with an order: "to", "in", "at"."""
     manners: frozenset[str]
     """Words that tell how, when or whether something is done: "without", "unless"."""
+    manner_first: Phrases
+    """Of those, and of others: what is no part of words that it stands before."""
     screens: frozenset[str]
     """What a text is shown on: no part of the text."""
     adverbs: frozenset[str]
@@ -169,10 +176,13 @@ def words_for(language: Language) -> Words:
         told=single("told"),
         messages=phrases("messages"),
         wishes=phrases("wishes"),
+        unsaid=phrases("unsaid"),
+        instead=phrases("instead"),
         greetings=phrases("greetings"),
         not_greeting=single("not_greeting"),
         manners=single("manners"),
         goes_on=single("goes_on"),
+        manner_first=phrases("manner_first"),
         screens=single("screens"),
         adverbs=single("adverbs"),
         subordinating=single("subordinating"),
@@ -195,9 +205,11 @@ def _tokens(entry: str, language: Language) -> Iterator[str]:
         yield from language.tokens_of(word)
 
 
-def doubtful(tree: Node, tokens: tuple[Token, ...], language: Language) -> Doubt | None:
+def doubtful(
+    tree: Node, tokens: tuple[Token, ...], language: Language, people: Phrases = NOBODY
+) -> Doubt | None:
     """The first text of a reading that may not be meant as text."""
-    judge = Judge(tokens, language)
+    judge = Judge(tokens, language, people)
     for node, leaf in _texts(tree):
         doubt = judge.doubt(node, leaf)
         if doubt is not None:
@@ -210,15 +222,22 @@ def _texts(node: Node) -> Iterator[tuple[Node, Leaf]]:
         if isinstance(part, Node):
             if part.means not in QUIET:
                 yield from _texts(part)
-        elif part.slot == "text" and node.means not in QUIET:
+        elif node.means not in QUIET and (part.slot == "text" or _is_said(node, part)):
             yield node, part
+
+
+def _is_said(node: Node, part: Leaf) -> bool:
+    return part.slot == "remark" and node.means == "say"  # "Bob sagt"
 
 
 class Judge:
     """Judges the texts of one sentence."""
 
-    def __init__(self, tokens: Sequence[Token], language: Language) -> None:
+    def __init__(
+        self, tokens: Sequence[Token], language: Language, people: Phrases = NOBODY
+    ) -> None:
         self.tokens = tokens
+        self.people = people
         self.language = language
         self.words = words_for(language)
         self.joins = {*language.speech.get("joins", ())}
@@ -241,6 +260,8 @@ class Judge:
 
         if self.tokens[start].kind == "quote":
             return doubt(start + 1, "said_or_done") if end > start + 1 else None
+        if leaf.slot == "remark":
+            return doubt(start, "cannot_say") if self.calls_somebody(start, end) else None
         if not spoken and STOP in self.norms(start, end):  # a question ends where its sentence does
             stop = start + self.norms(start, end).index(STOP)
             return doubt(min(stop + 1, end - 1), "not_understood")
@@ -283,13 +304,21 @@ class Judge:
                     return doubt(at, "not_understood")
         if node.means in ANSWERS:
             return self.answer(start, end, doubt, predicate=node.means == "said_so")
-        announced = start > 0 and self.tokens[start - 1].norm == COLON
+        before = self.tokens[start - 1].norm if start > 0 else ""
+        announced = before == COLON
+        announced |= before == COMMA and node.means == "say_that" and self.states(start, end)
         if (not spoken and node.means not in WRITTEN) or clause or announced:
             return None
         if self.tokens[start].norm in self.words.never_first | self.joins or self.given_to(start):
             return doubt(start, "cannot_say")
         if spoken and self.told_behind(start, end):  # "if he is there, that lunch is ready"
             return doubt(start, "said_or_done")
+        if words.unsaid.longest(self.all_norms, start) > words.messages.longest(
+            self.all_norms, start
+        ):
+            return doubt(start, "cannot_say")  # "say rather nothing"
+        if node.means == "say" and self.calls_somebody(start, end):
+            return doubt(start, "cannot_say")  # "sag Alice sie soll kommen"
         greeted = self.complete_greeting(start) if spoken else 0
         if 0 < greeted < end - start:  # "good morning to everyone who comes": to whom
             return doubt(start + greeted, "said_or_done")
@@ -331,6 +360,45 @@ class Judge:
         behind = next(marks, end) + 1
         return behind >= end or self.tokens[behind].norm in self.words.that
 
+    def calls_somebody(self, start: int, end: int) -> bool:
+        """Whether a text begins with the name of somebody of whom it says nothing, or ends with
+        whom it is said to: they are told, and their name is no part of it."""
+        words = self.words
+        if self.tokens[start].norm in self.language.speech.get("robot_pronouns", ()):
+            start += 1  # "sagst du Bob guten Morgen"
+        name = self.people.longest(self.all_norms, start)
+        behind = start + name
+        if name and behind >= end:
+            return True
+        if name:
+            after = self.tokens[behind].norm
+            if after == COMMA:
+                return bool({*self.norms(behind + 1, behind + 2)} & (words.asking | words.that))
+            message = self.begins(words.messages, behind)
+            if message or not (after in self.joins or after == "'s" or self.finite(behind)):
+                return True
+        to = (at for at in range(start + 1, end) if self.tokens[at].norm in self.words.not_greeting)
+        named = any(at + 1 + self.people.longest(self.all_norms, at + 1) == end for at in to)
+        return named and not self.is_clause(start, end)
+
+    def states(self, start: int, end: int) -> bool:
+        """Whether what somebody is told begins with where or when something is so: "in der Küche
+        wartet Bob"."""
+        words = self.words
+        no_statement = words.that | words.subordinating | words.asking
+        if self.tokens[start].norm not in words.not_greeting or not words.clauses:
+            return False
+        within = range(start + 1, end)
+        return no_statement.isdisjoint(self.norms(start, end)) and any(
+            self.finite(at) and not self.tokens[at].capital for at in within
+        )
+
+    def finite(self, at: int) -> bool:
+        """Whether a verb of a clause stands here."""
+        norm = self.tokens[at].norm
+        found = norm in self.words.finite | self.words.verb_forms
+        return found or self.words.finite_pattern.search(norm) is not None
+
     def given_to(self, start: int) -> bool:
         """Whether a pronoun stands here that something is given to, and not the subject of a text:
         "ihr einen Witz", but not "ihr seid toll"."""
@@ -356,8 +424,13 @@ class Judge:
             so = self.tokens[at - 1].norm in self.joins and self.tokens[at].norm in words.manners
             if so and self.tokens[at - 2].norm == COMMA:
                 return doubt(at - 1, "said_or_done")
+        for at in range(start + 1, end):  # "good evening rather than good morning"
+            if self.begins(words.instead, at):
+                return doubt(at, "said_or_done")
         greeting = self.greeting(start)
         behind = start + greeting
+        if self.begins(words.manner_first, start):
+            return doubt(start, "said_or_done")  # "laut Achtung"
         if first in words.not_greeting:  # "say in the lobby": where, and not what
             return doubt(start, "said_or_done")
         if greeting and self.wished(start) and not self.complete_greeting(start):
@@ -490,6 +563,7 @@ class Judge:
                     return True
                 continue
             noun = self.tokens[at].capital and bool(self.language.speech.get("capital_nouns"))
+            noun = noun or self.begins(words.messages, at)  # "guten Morgen"
             if norm in words.finite or (not noun and words.finite_pattern.search(norm)):
                 return True
             before = self.tokens[at - 1]

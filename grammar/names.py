@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import Any, Final
 
 import msgspec
 
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name
+from grammar.phrases import Phrases
 from grammar.wordforms import kind_words, plural
 
 CALLED: Final = frozenset({"person", "place", "object", "furniture", "contact", "routine"})
@@ -171,6 +172,18 @@ class Names:
     def known(self) -> frozenset[str]:
         """All words that are spelled right: of the rules, of the names, and function words."""
         return frozenset(self.language.words | self.words | self.language.closed)
+
+    @functools.cached_property
+    def people(self) -> Phrases:
+        """Whatever people are called by."""
+
+        def ways(node: Trie) -> Iterator[tuple[str, ...]]:
+            if node.values:
+                yield ()
+            for word, branch in node.branches.items():
+                yield from ((word, *rest) for rest in ways(branch))
+
+        return Phrases(ways(self.tries.get("person", Trie())))
 
     def _forms(self, text: str) -> tuple[str, ...]:
         forms = (text, plural(text, self.language))

@@ -35,6 +35,10 @@ ASKED_ON: Final = 6.0
 """Cost of a text that goes on over a second question: "... and how much"."""
 RECEIVER_IN_TEXT: Final = 4.0
 """Cost of a text that begins with the one it is told to: "ihr ihre Proben sind fertig"."""
+QUOTED: Final = 0.01
+"""Cost of a quotation that is read as a text: rather as a quotation."""
+NAME_ALONE: Final = 12.0
+"""Cost of a text that is no more than the name of whom it is told to: "sag Bob, um vier ..."."""
 
 LONGEST_RECEIVER: Final = 4
 """Words of a name that nobody knows, with what stands before it: "au docteur Ostrowski"."""
@@ -62,6 +66,7 @@ class OpenText:
             cost += RECEIVER_IN_TEXT
         greeted = {at + self.judge.complete_greeting(at)} - {at}
         that = self.judge.words.that
+        named = at + self.judge.people.longest(self.judge.all_norms, at)
         reported = self.tokens[at].norm in that or (at > 0 and self.tokens[at - 1].norm in that)
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
@@ -96,8 +101,9 @@ class OpenText:
                     ends, matches = 0.0, [match for match in matches if match[0] != position]
                 matches.append((position + 1, cost + ends, None))
                 continue
-            cost += 0.0 if token.kind == "quote" else FREE_WORD
-            matches.append((position + 1, cost, None))
+            cost += QUOTED if token.kind == "quote" else FREE_WORD
+            alone = NAME_ALONE if position + 1 == named and self._is_told(named) else 0.0
+            matches.append((position + 1, cost + alone, None))
             if token.kind == "quote" and position == at:
                 break  # what is quoted is the whole text
         return matches
@@ -127,6 +133,10 @@ class OpenText:
             at > 0 and token.norm in asking and self.tokens[at - 1].norm in self.words.joins
             for at, token in enumerate(self.tokens)
         ]
+
+    def _is_told(self, at: int) -> bool:
+        """Whether what somebody is told begins here, behind their name."""
+        return at < len(self.tokens) and self.tokens[at].norm in (COMMA, COLON)
 
     def _never_first(self, at: int) -> bool:
         """Whether a pronoun stands here that no statement begins with: "mir dann, wer da ist"."""

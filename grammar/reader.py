@@ -19,7 +19,7 @@ import msgspec
 import grammar.meanings.all_meanings  # noqa: F401 (what the rules name is entered there)
 from grammar.chart import Chart, Node, TooMuch
 from grammar.company import in_company
-from grammar.coverage import in_manner, left_out, unheeded, unspoken
+from grammar.coverage import in_manner, left_out, no_nouns, unheeded, unspoken
 from grammar.discourse import Discourse
 from grammar.errors import Ambiguous, NotUnderstood
 from grammar.freetext import Doubt, doubtful, words_for
@@ -156,7 +156,7 @@ class SentenceReader:
         plan = told_when_all_are_asked(plan, discourse)
         if not is_one_of_each(plan):
             return rejected(self.text, self.language.phrase("too_complicated"), self.context)
-        doubt = doubtful(tree, self.tokens, self.language)
+        doubt = doubtful(tree, self.tokens, self.language, self.names.people)
         if doubt is not None:
             return self._doubted(doubt)
         plan = without_unused(plan)  # what came to nothing is lost, too
@@ -165,6 +165,7 @@ class SentenceReader:
         resolved = discourse.command.resolved
         lost = left_out(tree, self.tokens, plan, self.language, self.lexicon, resolved)
         lost += unspoken(tree, self.tokens, plan, self.language, resolved)
+        lost += no_nouns(plan, self.tokens, self.language, self.names.words)
         if lost:
             words = " ".join(lost)
             message = self.language.phrase("not_understood", part=words)

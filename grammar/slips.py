@@ -245,6 +245,7 @@ def spellings(
         names_of(language, lexicon).words,
         language.closed,
         signs(language),
+        language.speech.get("weighty", {}).get("negations", ()),  # "weder" is no "wieder"
         words_for(language).verbs,  # what the robot cannot do is no slip
         listed_nouns(language),
     )

@@ -50,7 +50,7 @@ class Slots:
         self.tokens = tokens
         self.corrections = corrections
         self._command_words = command_words(self.language)
-        self._judge = Judge(tokens, self.language)
+        self._judge = Judge(tokens, self.language, names.people)
         self._first: dict[int, tuple[str, ...]] = {}
         self._open_text = OpenText(tokens, self.language, self._judge)
         self._numerals = Numerals(tokens, self.language)

@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from grammar.discourse import Discourse
+from grammar.errors import NotUnderstood
+from grammar.freetext import words_for
 from grammar.names import names_of
 from grammar.tokens import COLON, COMMA
 
@@ -56,18 +58,41 @@ def direct_clause(
     if is_direct(d, start):
         return _written([group.spelled for group in groups])
     for position, group in enumerate(groups):
-        ended = bool(clauses[-1]) and clauses[-1][-1].norm in rules["finite"]
-        begins = groups[position + 1 : position + 2]
-        if group.norm == COMMA and begins and begins[0].norm in rules["subordinating"]:
-            first = clauses[-1]
-            rest = d.words(begins[0].at, end)
-            return _joined(rules, d, [*clauses[:-1], first], joints) + f", {rest}"
+        ended = bool(clauses[-1]) and _is_verb(rules, d, clauses[-1][-1], clauses[-1][0])
+        behind = groups[position + 1 :]
+        if group.norm == COMMA and behind and _stays(rules, d, behind):
+            if not ended:  # "dass er, wenn er kommt, bleiben soll"
+                words = d.words(start, end)
+                raise NotUnderstood(d.language.phrase("not_understood", part=words))
+            rest = _written([group.spelled for group in behind])
+            return _joined(rules, d, clauses, joints) + f", {rest}"
         if ended and group.norm in (COMMA, *d.language.speech["joins"]):
             joints.append(", " if group.norm == COMMA else f" {group.spelled} ")
             clauses.append([])
         else:
             clauses[-1].append(group)
     return _joined(rules, d, clauses, joints)
+
+
+def _is_verb(rules: Any, d: Discourse, group: Group, subject: Group) -> bool:
+    """Whether a word is the verb of a clause with this subject, as far as its form tells."""
+    said = words_for(d.language).finite_pattern.search(group.norm) is not None
+    said |= subject.norm in rules["first_person"] and group.norm.endswith("e")
+    said |= group.norm in d.language.speech["base_forms"]
+    return group.norm in rules["finite"] or (said and not group.capital)
+
+
+def _stays(rules: Any, d: Discourse, groups: Sequence[Group]) -> bool:
+    """Whether what stands behind a comma is said as it is: "weil ...", "um ... zu ...", "den ich
+    kenne"; but not "die Suppe kalt ist"."""
+    first, *others = groups
+    if first.norm in rules["subordinating"] or first.norm in rules["prepositions"]:
+        return True
+    relative = first.norm in rules["relative"] and bool(others)
+    capital = [d.tokens[each.at].capital for each in others[:2]]
+    noun = relative and (capital[0] and not _named(d, groups, 1))
+    adjective = relative and others[0].norm.endswith(("e", "en"))
+    return relative and not noun and not (adjective and capital[1:] == [True])
 
 
 def is_direct(d: Discourse, start: int) -> bool:

@@ -8,6 +8,7 @@ from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.errors import NotUnderstood
 from grammar.meanings.finding import speak_to
+from grammar.meanings.messages import told_to
 from grammar.meanings.persons import guest_for, is_me, person_me
 from grammar.meanings.questions import turn_to_you
 from grammar.meanings.references import answers_in
@@ -15,6 +16,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.requested import Request
 from grammar.plan import Call, Text
 from grammar.reminders.reminded import note_reminder
+from grammar.tokens import COMMA
 from grammar.wordorder import asked_of_you
 
 
@@ -25,7 +27,10 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     # Whoever else is spoken of is not the one who is asked: "sie soll ihn mir bringen".
     person: Thing | None = guest_for(d, node.parts.get("person_ref"), d.get(node, "person_ref"))
     d.answers = replace(d.answers, message=node)
-    if part is not None and verb_never(d, part.start):
+    if (clause := no_request(d, node)) is not None:
+        return speak_to(d, person, [Call("say", {"text": Text(told_to(d, clause, person))})])
+    within = set(d.language.speech.get("clause", {}).get("subordinating", ()))
+    if part is not None and (verb_never(d, part.start) or _clause_begins(d, part, within)):
         raise NotUnderstood(d.language.phrase("not_understood", part=d.words(part.start, part.end)))
     if node.production.fixed.get("to_me"):
         person = person_me(d, node)
@@ -63,6 +68,30 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     if "phrase" not in node.production.fixed and isinstance(words, Text):
         d.answers = replace(d.answers, request=Request(saying, words.value, person))
     return steps
+
+
+def _clause_begins(d: Discourse, part: Leaf | Node, words: set[str]) -> bool:
+    """Whether another clause stands within a request: "er soll, wenn er kommt, ..."."""
+    first = range(part.start, part.end)
+    return any(d.tokens[at].norm in words and d.tokens[at - 1].norm == COMMA for at in first)
+
+
+def no_request(d: Discourse, node: Node) -> Leaf | None:
+    """What is only said of somebody: who may come, or does not have to, is not asked to come."""
+    duty = node.parts.get("duty")
+    if duty is None:
+        return None
+    start, end = node.parts["person_ref"].end, max(node.parts["verb"].end, duty.end)
+    words, modal = set(d.norms(start, end)), d.tokens[duty.end - 1]
+    negated = not words.isdisjoint(d.language.speech["weighty"]["negations"])
+    requests = d.language.speech["requesting"]["negated" if negated else "plain"]
+    subjects = d.language.speech["addressing_last"]["subjects"]
+    why = node.parts.get("why")
+    whose = why is not None and bool({*d.norms(why.start, why.end)} & {*subjects})
+    if (modal.spelled or modal.norm) in requests and not whose:
+        return None
+    first = (at for at in range(start, end) if d.tokens[at].norm in subjects)
+    return Leaf("remark", None, next(first, start), end if why is None else why.end)
 
 
 def verb_never(d: Discourse, at: int) -> bool:

@@ -6,6 +6,7 @@ mean was spoken of in a clause before it ("tell Alice that her patient is here a
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -133,7 +134,8 @@ def indirect(d: Discourse, part: Leaf | Node) -> dict[int, str]:
     norms = d.norms(part.start, part.end)
     if not data or "ich" in norms:
         return {}
-    return {part.start + at: data[norm] for at, norm in enumerate(norms) if norm in data}
+    said = enumerate(norms)  # but "Komme gleich" is said of oneself
+    return {part.start + at: data[norm] for at, norm in said if at and norm in data}
 
 
 def _said_by_robot(d: Discourse, clause: str) -> str:
@@ -278,7 +280,99 @@ def turned(d: Discourse, start: int, end: int, person: Thing | None) -> dict[int
         if at == start and word in data["subjects"]:
             verb = min(start + 1, last - 1) if is_direct(d, start) else last - 1
             changed[verb] = base_form(d, d.words(verb, verb + 1))
+    if not person.me:
+        _turn_later(d, start, last, end, person, changed)
     return changed
+
+
+def _turn_later(
+    d: Discourse, start: int, first: int, end: int, person: Thing, changed: dict[int, str]
+) -> None:
+    """What the words of the clauses behind the first become: "..., bevor er operiert wird" ->
+    "Sie", "werden". Raises `NotUnderstood` where a pronoun may mean who is told or another."""
+    data = d.language.speech["addressing_last"]
+    subject = start in changed and d.tokens[start].norm in data["subjects"]
+    ends = [
+        at
+        for at in range(first, end)
+        if d.tokens[at].kind == "mark" or d.tokens[at].norm in d.language.speech["joins"]
+    ]
+    relative = d.language.speech["clause"]["relative"]
+    for mark, behind in itertools.pairwise([*ends, end] if ends else []):
+        begin = mark + 1
+        if begin >= behind or d.tokens[mark].norm == STOP:
+            continue
+        joined, own = d.tokens[mark].kind != "mark", False
+        direct = is_direct(d, start) and joined
+        for at in range(begin, behind):
+            word = d.tokens[at].norm
+            own = own or word in data["subjects"]
+            last_sein = word in data.get("verbs_too", ()) and at + 1 == behind
+            if word not in data["you"] or last_sein or not_of(d, person, at):
+                continue
+            if d.gender(at, at + 1) is None or d.one_before(person, at) is not None:
+                continue
+            is_subject = word in data["subjects"] and at <= begin + 1
+            verb = _verb_behind(d, at, end, direct or (at == begin and is_direct(d, start)))
+            if _another_meant(d, start, at, data):
+                duty = verb is not None and d.tokens[verb].norm in data["duties"]
+                other = is_subject and (duty or d.tokens[at - 1].norm in relative)
+                if subject or other or _unknown_named(d, start, at):
+                    words = d.words(start, end)
+                    raise NotUnderstood(d.language.phrase("not_understood", part=words))
+                continue
+            owned = word in data["possessives"] and at + 1 < end and d.tokens[at + 1].capital
+            changed[at] = data["possessives" if owned else "you"][word]
+            if is_subject:
+                if verb is None:
+                    words = d.words(start, end)
+                    raise NotUnderstood(d.language.phrase("not_understood", part=words))
+                changed[verb] = base_form(d, d.words(verb, verb + 1))
+        if subject and joined and not own:  # "dass er krank ist und heute nicht kommt"
+            verb = begin if is_direct(d, start) else behind - 1
+            if _finite(d, verb) and not d.tokens[begin].capital:
+                changed[verb] = base_form(d, d.words(verb, verb + 1))
+
+
+def _finite(d: Discourse, at: int) -> bool:
+    """Whether a verb of a clause stands here, by its form."""
+    token, words = d.tokens[at], words_for(d.language)
+    form = token.norm in words.finite or words.finite_pattern.search(token.norm) is not None
+    return form and not token.capital
+
+
+def _verb_behind(d: Discourse, at: int, end: int, direct: bool) -> int | None:
+    """The verb of the clause whose subject stands here: right behind it, or last."""
+    joins = d.language.speech["joins"]
+    places = range(at + 1, min(at + 2, end)) if direct else range(at + 1, end)
+    for place in places:
+        last = place + 1 == end or d.tokens[place + 1].kind == "mark"
+        last = last or d.tokens[place + 1].norm in joins
+        if (direct or last) and _finite(d, place):
+            return place
+    return None
+
+
+def _unknown_named(d: Discourse, start: int, at: int) -> bool:
+    """Whether somebody was named of whom nobody knows whether it is a man."""
+    return any(
+        _is_somebody(d, token, {"somebody": ()}) and not d.gender_of(token.norm)
+        for token in d.tokens[start:at]
+    )
+
+
+def _another_meant(d: Discourse, start: int, at: int, data: Mapping[str, Any]) -> bool:
+    """Whether a pronoun may mean somebody or something else that a message has spoken of."""
+    gender = d.gender(at, at + 1)
+    articles = data["articles"].get(gender, ())
+    for place in range(start, at - 1):
+        token = d.tokens[place]
+        somebody = _is_somebody(d, token, {"somebody": ()})
+        if somebody and d.gender_of(token.norm, gender or "") == gender:
+            return True
+        if token.norm in articles and any(each.capital for each in d.tokens[place + 1 : place + 3]):
+            return True
+    return False
 
 
 def begins_sentence(d: Discourse, start: int, at: int) -> bool:

@@ -8,9 +8,10 @@ from typing import Any
 
 import msgspec
 
-from grammar.chart import Node
+from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.errors import NotUnderstood
+from grammar.freetext import words_for
 from grammar.meanings.about_guests import host_told, who_is_told
 from grammar.meanings.absences import undelivered
 from grammar.meanings.answered_numbers import of_answers
@@ -70,6 +71,8 @@ def report(d: Discourse, node: Node) -> Steps:
     person_at: Where | None = d.get(node, "person_at")
     if person is not None and person_at is not None:  # "tell Bob the time in the kitchen"
         person = replace(person, place=person_at.place, here=False)
+    if receiver is not None and not is_me(person) and states(d, receiver, info):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
     if person is not None and found is None:
         person = gone_to_tell(d, person)
     if found is None:
@@ -94,6 +97,15 @@ def report(d: Discourse, node: Node) -> Steps:
         counts=person is None and bool(fixed.get("counted")),
     )
     return found_out(d, found, person, back=bool(fixed.get("to_me")) or is_me(person))
+
+
+def states(d: Discourse, receiver: Leaf | Node, info: Leaf | Node) -> bool:
+    """Whether what sounds like where somebody is and a question is what they are told, where the
+    verb stands second: "sag Bob, in der Küche ist noch Milch"."""
+    words = words_for(d.language)
+    verb = d.tokens[info.start].norm
+    finite = verb in words.finite or words.finite_pattern.search(verb) is not None
+    return words.clauses and finite and info.start == receiver.end
 
 
 def looks_around(d: Discourse) -> bool:

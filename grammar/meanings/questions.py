@@ -61,6 +61,7 @@ from grammar.plan import (
     Text,
     Value,
 )
+from grammar.tokens import COMMA
 from grammar.wordforms import head_word, singular
 from grammar.wordorder import parted
 
@@ -319,6 +320,10 @@ def asked_about(d: Discourse, start: int, end: int) -> Thing | None:
 def question(d: Discourse, node: Node) -> str:
     """A direct question made of a reported one by its form: "Do you {verb} {rest}?"."""
     form: str = node.production.fixed["form"]
+    if (inner := clause_within(d, node)) is not None:
+        return with_clause(d, node, inner)
+    if _reported_as_direct(d, node):
+        return _put_directly(d, node)
     pronouns = d.language.speech.get("clause", {}).get("pronouns", ())
     alone = node.parts["rest"] if node.parts.keys() == {"aux", "rest"} else None
     if alone is not None and set(d.norms(alone.start, alone.end)) <= set(pronouns):
@@ -361,6 +366,13 @@ def question(d: Discourse, node: Node) -> str:
         if verb.lower() in d.language.speech.get("no_question_verbs", ()):
             words = d.words(node.start, node.end)
             raise NotUnderstood(d.language.phrase("not_understood", part=words))
+        goes_on = base_form(d, verb.lower()) in d.language.speech.get("asks_on", ())
+        bare = (
+            "rest" not in node.parts or set(values["rest"].split()) <= words_for(d.language).adverbs
+        )
+        if goes_on and bare and node.end < len(d.tokens) and d.tokens[node.end].norm == COMMA:
+            words = d.words(node.start, node.end)  # "ob er weiß", and then what
+            raise NotUnderstood(d.language.phrase("not_understood", part=words))
         base = past_base(d, verb) if past else None
         if base is None and past and in_past(d, node, verb):  # "where she put it"
             base = verb
@@ -398,6 +410,79 @@ def question(d: Discourse, node: Node) -> str:
         words = d.words(node.start, node.end)
         raise NotUnderstood(d.language.phrase("not_understood", part=words))
     return capital(text.replace(" ?", mark).replace(" ,", ",").replace(" .", "."))
+
+
+def clause_within(d: Discourse, node: Node) -> int | None:
+    """The comma where another clause begins in a reported question whose verb stands last: "ob er
+    weiß, wo Clara ist". Raises `NotUnderstood` where it is not known which verb is its own."""
+    rules, verb = d.language.speech.get("clause"), node.parts.get("verb")
+    words = words_for(d.language)
+    if rules is None:
+        return None
+    unknown = NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    joins = d.language.speech["joins"]
+    for at in range(node.start + 1, node.end - 1):
+        if d.tokens[at].norm in joins and d.tokens[at + 1].norm in rules["subordinating"]:
+            raise unknown  # "ob es ihm gut geht oder ob er Hilfe braucht"
+    if verb is None or verb.end != node.end:
+        return None
+    forms = {*rules["finite"], *d.language.speech["base_forms"]}
+    inner = {*rules["subordinating"], *rules["relative"], *words.asking}
+    for at in range(node.start + 1, verb.start):
+        before = d.tokens[at - 1]
+        ends = before.norm in forms or words.finite_pattern.search(before.norm)
+        if d.tokens[at].norm == COMMA and ends and not before.capital:
+            return at
+        if d.tokens[at].norm == COMMA and d.tokens[at + 1].norm in inner:
+            raise unknown
+    return None
+
+
+def _reported_as_direct(d: Discourse, node: Node) -> bool:
+    """Whether what was read as a direct question is a reported one: "warum er lacht"."""
+    aux, rest = node.parts.get("aux"), node.parts.get("rest")
+    words = words_for(d.language)
+    if aux is None or rest is None or d.tokens[aux.start].norm not in words.asking:
+        return False
+    asked = d.language.speech.get("addressing_last", {}).get("you", ())
+    return d.tokens[rest.start].norm in asked
+
+
+def _put_directly(d: Discourse, node: Node) -> str:
+    """ "warum er den Arm hebt" -> "Warum heben Sie den Arm?". Raises `NotUnderstood`."""
+    aux, rest = node.parts["aux"], node.parts["rest"]
+    last = d.tokens[rest.end - 1]
+    forms = {*d.language.speech["clause"]["finite"], *d.language.speech["base_forms"]}
+    ends = last.norm in forms or words_for(d.language).finite_pattern.search(last.norm)
+    subject = d.norms(rest.start, rest.start + 1)[0]
+    others = {COMMA, *d.language.speech["joins"]} & set(d.norms(rest.start, rest.end))
+    subjects = d.language.speech["addressing_last"]["subjects"]
+    if subject not in subjects or others or last.capital or not ends:
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    verb, particle = parted(d, d.words(rest.end - 1, rest.end))
+    you = d.language.speech["to_you"][subject]
+    between = turn_to_you(d, rest.start + 1, rest.end - 1)
+    asked = f"{d.words(aux.start, aux.end)} {base_form(d, verb)} {you} {between} {particle}"
+    return capital(f"{' '.join(asked.split())}?")
+
+
+def with_clause(d: Discourse, node: Node, comma: int) -> str:
+    """A reported question with another clause behind it, which is asked as it is. Raises
+    `NotUnderstood` where somebody spoken of in it may be who is asked."""
+    you: dict[str, str] = d.language.speech["to_you"]
+    rest = node.parts.get("rest")
+    behind = set(d.norms(comma, node.end))
+    if rest is None or behind & (you.keys() | {*d.language.speech["or"]}):
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(node.start, node.end)))
+    parts: dict[str, Leaf | Node] = dict(node.parts)
+    parts["verb"] = Leaf("verb", d.words(comma - 1, comma), comma - 1, comma)
+    if rest.start < comma - 1:
+        parts["rest"] = Leaf("remark", None, rest.start, comma - 1)
+    else:
+        del parts["rest"]
+    first: str = question(d, replace(node, end=comma + 1, parts=parts))
+    mark = first[-1:]
+    return f"{first.removesuffix(mark)}, {d.words(comma + 1, node.end)}{mark}"
 
 
 def _ends_phrase(d: Discourse, at: int, end: int) -> bool:
