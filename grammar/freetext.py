@@ -15,6 +15,7 @@ import functools
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import Any, Final
 
 from grammar.chart import Leaf, Node
@@ -26,7 +27,10 @@ SPOKEN: Final = frozenset({"say", "say_that"})
 WRITTEN: Final = frozenset({"show"})
 """Meanings whose text is shown: doubted where it names something instead: "the lunch menu"."""
 REQUESTED: Final = frozenset({"ask_to"})
+TOLD: Final = REQUESTED | {"say_that", "ask"}
+"""Meanings by which something is passed on to somebody."""
 ANSWERS: Final = frozenset({"option_words", "said_so"})
+ANSWERED: Final = ANSWERS | {"answered"}
 INFINITIVE_WITHIN: Final = 5
 """Words: "de ne pas le lui dire"."""
 NOBODY: Final = Phrases(())
@@ -125,6 +129,22 @@ class Words:
     """Words that no text ends with: "except", "because"."""
     back: Phrases
     """Speaking of the robot's return: "when you are back"."""
+    requests: frozenset[str]
+    """Words before each thing that somebody is asked to do: "to wait and to call"."""
+    reported: frozenset[str]
+    """Pronouns for those who are told of, which they do not say of themselves: "he", "her"."""
+    until: frozenset[str]
+    events: Phrases
+    """Words before what is waited for: "as soon as"."""
+    asked_too: re.Pattern[str] | None
+    """A clause that goes on with what somebody is asked to do; None where an order looks the same:
+    "ask Bob to wait and call"."""
+    asked_with: re.Pattern[str]
+    """A clause that only goes on with the one before it: ", die Tür zu öffnen"."""
+    receivers: frozenset[str]
+    """Pronouns by which an order to the robot speaks of whom it told something before."""
+    own: Phrases
+    """What nobody but the robot is meant to do: "come back"."""
     clauses: bool
     """Whether a message that does not begin with "that" has to be a clause."""
 
@@ -190,6 +210,18 @@ def words_for(language: Language) -> Words:
         datives=single("datives"),
         how=re.compile(data.get("how", r"(?!)")),
         back=phrases("back"),
+        requests=single("requests"),
+        reported=frozenset(
+            word
+            for name in ("addressing", "addressing_last")
+            for word in language.speech.get(name, {}).get("you", ())
+        ),
+        until=single("until"),
+        events=phrases("events"),
+        asked_too=re.compile(data["asked_too"]) if "asked_too" in data else None,
+        asked_with=re.compile(data.get("asked_with", r"(?!)")),
+        receivers=single("receivers"),
+        own=phrases("own"),
         clauses=bool(data.get("clauses", False)),
     )
 
@@ -210,6 +242,10 @@ def doubtful(
 ) -> Doubt | None:
     """The first text of a reading that may not be meant as text."""
     judge = Judge(tokens, language, people)
+    for node in _told(tree):
+        at = judge.asked_on(node)
+        if at is not None:
+            return Doubt(at, len(tokens), "not_understood", False, (node.start, node.end))
     for node, leaf in _texts(tree):
         doubt = judge.doubt(node, leaf)
         if doubt is not None:
@@ -228,6 +264,14 @@ def _texts(node: Node) -> Iterator[tuple[Node, Leaf]]:
 
 def _is_said(node: Node, part: Leaf) -> bool:
     return part.slot == "remark" and node.means == "say"  # "Bob sagt"
+
+
+def _told(node: Node) -> Iterator[Node]:
+    if node.means in TOLD:
+        yield node
+    for part in node.parts.values():
+        if isinstance(part, Node):
+            yield from _told(part)
 
 
 class Judge:
@@ -277,6 +321,9 @@ class Judge:
         last = self.tokens[end - 1].norm
         if last in self.joins | self.words.goes_on:
             return doubt(end - 1, "not_understood")  # "..., except"
+        for at in range(start + 1, end) if spoken else ():  # "he mustn't eat and to lie down"
+            if self.asked_again(at) and not self.asked_before(start, at - 1):
+                return doubt(at, "not_understood")
         greeting = self.greeting(start) if spoken else 0
         for at in range(start + 1, end):
             if not self.joined(at, start):
@@ -301,6 +348,10 @@ class Judge:
         if not spoken and node.means not in REQUESTED:
             for at in range(start, end):
                 if self.words.how.match(" ".join(self.norms(at, end))):
+                    return doubt(at, "not_understood")
+        if node.means in ANSWERED:
+            for at in range(start, end):  # "if he says it's his chest": he says "my"
+                if self.tokens[at].norm in words.reported:
                     return doubt(at, "not_understood")
         if node.means in ANSWERS:
             return self.answer(start, end, doubt, predicate=node.means == "said_so")
@@ -545,6 +596,65 @@ class Judge:
             if word in words.to and following[0] in words.verbs:
                 return True
         return False
+
+    def asked_on(self, node: Node) -> int | None:
+        """Where something goes on behind what is told to somebody that is for them, or may be:
+        "ask Rosa to call a taxi and bring her coat", "sie soll warten und dann anrufen"."""
+        words, end = self.words, node.end
+        at = end
+        while at < len(self.tokens) and (
+            self.tokens[at].norm == COMMA or self.tokens[at].norm in self.joins | words.between
+        ):
+            at += 1
+        if at >= len(self.tokens):
+            return None
+        event = self.words.events.longest(self.all_norms, at)
+        if event and at + event < len(self.tokens) and self.tokens[at + event].capital:
+            return at  # "tell Alice that we start when Bob comes": who waits for him?
+        if at == end:
+            return None
+        rest = self.tokens[at:]
+        clause = list(
+            takewhile(lambda each: each.kind != "mark" and each.norm not in self.joins, rest)
+        )
+        said = " ".join(each.norm.capitalize() if each.capital else each.norm for each in clause)
+        first = rest[0].norm
+        if self.tokens[end].norm == COMMA and words.asked_with.search(said):
+            return at
+        asked = self.asks_to(at)
+        if self.begins(words.own, at + asked):
+            return None
+        if asked and node.means != "ask" and not self.asked_before(0, node.start):
+            return at
+        joined = any(each.norm in self.joins for each in self.tokens[end:at])
+        if node.means not in REQUESTED or not joined:
+            return None
+        if words.asked_too is not None:
+            return at if first not in words.verbs and words.asked_too.search(said) else None
+        if self.tokens[end].norm == COMMA or first not in words.verbs:
+            return None
+        named = any(each.capital for each in self.tokens[node.parts["text"].start : end])
+        of_them = any(each.norm in words.receivers for each in clause)
+        return None if of_them and not named else at
+
+    def asks_to(self, at: int) -> bool:
+        """Whether something that somebody is asked to do begins here, with the word for that: "to
+        call", "de le lui dire"."""
+        if self.tokens[at].norm not in self.words.requests or at + 1 >= len(self.tokens):
+            return False
+        if "infinitive" in self.language.speech:
+            return self.has_infinitive(at + 1, len(self.tokens))
+        return self.tokens[at + 1].norm in self.words.verbs
+
+    def asked_before(self, start: int, end: int) -> bool:
+        """Whether what is asked for has begun before: "je vous prie de dire ... et de revenir"."""
+        return not self.words.requests.isdisjoint(self.norms(start, end))
+
+    def asked_again(self, at: int) -> bool:
+        """Whether one more thing that somebody is asked to do begins here: "... and to call"."""
+        if not 0 < at < len(self.tokens) or self.tokens[at - 1].norm not in self.joins:
+            return False
+        return self.asks_to(at)
 
     # --- sentences, questions
 

@@ -68,6 +68,8 @@ class OpenText:
         that = self.judge.words.that
         named = at + self.judge.people.longest(self.judge.all_norms, at)
         reported = self.tokens[at].norm in that or (at > 0 and self.tokens[at - 1].norm in that)
+        requests = {token.norm for token in self.tokens[max(at - 1, 0) : at + 1]}
+        asked = not requests.isdisjoint(self.judge.words.requests) and not self._in_question(at)
         for position in range(at, len(self.tokens)):
             token = self.tokens[position]
             if position in greeted:
@@ -77,7 +79,10 @@ class OpenText:
             if token.kind == "mark":
                 if position == at:
                     return []
-                if self._goes_on(position + 1) or self._is_aside(at, position + 1):
+                goes_on = self._goes_on(position + 1) and not (
+                    asked and self.judge.asked_again(position + 2)
+                )
+                if goes_on or self._is_aside(at, position + 1):
                     break
                 if token.norm == STOP:
                     if reported:
@@ -88,7 +93,9 @@ class OpenText:
                 continue
             if position > at and self._ends[position]:
                 break
-            if position > at and self._others[position]:
+            if asked and (self.judge.asked_again(position) or self._lasts(position, at)):
+                matches = []  # "to wait and to call", "to wait until three": one request
+            elif position > at and self._others[position]:
                 cost += SWALLOWED_COMMAND
             if position > at + 1 and self._asks_on[position]:
                 cost += ASKED_ON
@@ -107,6 +114,10 @@ class OpenText:
             if token.kind == "quote" and position == at:
                 break  # what is quoted is the whole text
         return matches
+
+    def _lasts(self, at: int, start: int) -> bool:
+        """Whether it is said here until when somebody is to do what they are asked to do."""
+        return at > start and self.tokens[at].norm in self.judge.words.until
 
     @functools.cached_property
     def _ends(self) -> list[bool]:
@@ -157,6 +168,8 @@ class OpenText:
             token, before = self.tokens[position], self.tokens[position - 1]
             if token.kind != "word" or before.kind != "word":
                 break
+            if first.norm in self.words.to_whom and self.judge.asks_to(position):
+                return True  # "dis à Bob de venir et d'attendre"
             if token.norm in self.judge.words.that and before.norm not in self._language.closed:
                 return not self.judge.is_clause(at, position)
         titled = self.tokens[at - 1].norm in self.words.titles
@@ -243,11 +256,15 @@ class OpenText:
         whether he is hungry, I'm in the lobby"."""
         if at + 1 >= len(self.tokens):
             return False
-        clause = takewhile(lambda token: token.kind != "mark", reversed(self.tokens[:begin]))
-        asking = self.judge.words.asking | self.words.elided_if
-        asks = any(token.norm in asking for token in clause)
         speaks = self.tokens[at].norm in self.words.speakers
-        return asks and speaks and self.tokens[at + 1].norm in self.words.staying
+        staying = self.tokens[at + 1].norm in self.words.staying
+        return speaks and staying and self._in_question(begin)
+
+    def _in_question(self, at: int) -> bool:
+        """Whether a question has begun before in the clause here: "whether he wants to ..."."""
+        clause = takewhile(lambda token: token.kind != "mark", reversed(self.tokens[:at]))
+        asking = self.judge.words.asking | self.words.elided_if
+        return any(token.norm in asking for token in clause)
 
     def _condition(self, at: int) -> bool:
         """Whether a condition of its own begins: "and if so, ...", "Otherwise ..."."""

@@ -60,6 +60,7 @@ FILLED: Final = {
     "word": ["like"],
     "verb": ["kommt"],
     "zu_infinitive": ["anzurufen"],
+    "infinitive": ["kommen"],
     "remark": ["lunch is ready"],
     "unknown": ["pharmacy"],
     "stranger": ["Zorro"],

@@ -98,6 +98,7 @@ class Slots:
             "{word}": self._word,
             "{verb}": self._verb,
             "{zu_infinitive}": self._zu_infinitive,
+            "{infinitive}": self._infinitive,
             "{located}": functools.partial(self._preposition, "located"),
             "{towards}": functools.partial(self._preposition, "towards"),
             "{remark}": self._open_text.remark,
@@ -246,6 +247,11 @@ class Slots:
         if at >= len(self.tokens) or self.tokens[at].capital:
             return []
         return [] if self.tokens[at].norm in self._no_verbs else self._word(at)
+
+    def _infinitive(self, at: int) -> list[Match]:
+        """A verb at the end of a clause that is no order by its form: "holen", not "hol"."""
+        ending = self.language.speech["infinitive_form"]
+        return self._verb(at) if re.search(ending, "".join(self._judge.norms(at, at + 1))) else []
 
     def _zu_infinitive(self, at: int) -> list[Match]:
         """A verb with "zu" inside: "anzurufen"; its value is the verb without it."""

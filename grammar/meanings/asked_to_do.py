@@ -7,6 +7,7 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.errors import NotUnderstood
+from grammar.freetext import Judge
 from grammar.meanings.finding import speak_to
 from grammar.meanings.messages import told_to
 from grammar.meanings.persons import guest_for, is_me, person_me
@@ -38,7 +39,7 @@ def ask_to(d: Discourse, node: Node) -> Steps:
     of_speaker = ["to_you_speaker"] if is_me(person) else []
     kinds = [*of_speaker, "to_you_asked", "to_you_who", "to_you"]
     you = next(each for each in kinds if each in d.language.speech)
-    text = turn_to_you(d, part.start, part.end, you, person) if part is not None else ""
+    text = _asked(d, part, you, person) if part is not None else ""
     if "wished" in node.parts:  # "qu'elle vienne ici"
         text = f"{d.get(node, 'wished')} {text}".strip()
     verb = node.parts.get("verb")
@@ -92,6 +93,15 @@ def no_request(d: Discourse, node: Node) -> Leaf | None:
         return None
     first = (at for at in range(start, end) if d.tokens[at].norm in subjects)
     return Leaf("remark", None, next(first, start), end if why is None else why.end)
+
+
+def _asked(d: Discourse, part: Leaf | Node, you: str, person: Thing | None) -> str:
+    """What somebody is asked to do, as one request: "to wait and to call" is "wait and call"."""
+    judge = Judge(d.tokens, d.language)
+    again = [at for at in range(part.start + 1, part.end) if judge.asked_again(at)]
+    begins, ends = [part.start, *(at + 1 for at in again)], [*again, part.end]
+    pieces = zip(begins, ends, strict=True)
+    return " ".join(turn_to_you(d, start, end, you, person) for start, end in pieces)
 
 
 def verb_never(d: Discourse, at: int) -> bool:

@@ -106,6 +106,10 @@ def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
         of_robot and of_receiver
     ):  # "that you agree with him": the receiver is "him", and so no "you"
         return sentence_form(_said_of_itself(d, part, ordered))
+    before = d.tokens[part.start - 1].kind
+    if of_robot and not reports and before == "word" and person is not None and not person.me:
+        # "tell Noah you are a robot": who is?
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(part.start, part.end)))
     if of_robot and reports:
         ordered = _said_by_robot(d, ordered)
     unsure = d.language.speech.get("unsure_told")
@@ -142,7 +146,7 @@ def _said_by_robot(d: Discourse, clause: str) -> str:
     """ "you are late", said of the robot, as it says it of itself: "I am late". What anybody may do
     ("that you can sit down") is left as it is."""
     own: dict[str, str] = d.language.speech.get("of_robot", {})
-    verbs = [each for each in own if " " in each]
+    verbs = [each for each in own if " " in each or "'" in each]
     begun = [each for each in verbs if f"{clause.lower()} ".startswith(f"{each} ")]
     longest = max(begun, key=len, default="")
     return own.get(longest, "") + clause[len(longest) :]

@@ -529,6 +529,8 @@ def turn_to_you(
         owned = d.language.speech.get("addressing_last", {}).get("possessives", {})
         if turned is not None and last < end and d.tokens[last].capital:
             turned = owned.get(first.norm, turned)  # "ihr Buch", but "gefällt ihr das Buch"
+        if turned is not None and last < end and not of_another:
+            turned = _robot_as_subject(d, position, last) or turned
         turned = instead.get(position, turned)
         if turned is not None:
             original = opened.replace(first.norm, turned, 1)
@@ -548,6 +550,19 @@ def turn_to_you(
         whole = turned is not None and len(turned) > 1
         position = last
     return " ".join(pieces).replace(" \b", "").strip(" ,.?!:()")
+
+
+def _robot_as_subject(d: Discourse, at: int, verb: int) -> str | None:
+    """How the robot speaks of itself where it is who does something: "I" in "so you can get past".
+    Raises `NotUnderstood` where the verb has other forms then: "if he thinks you are nice"."""
+    words, before = words_for(d.language), d.tokens[at].norm
+    behind = d.tokens[verb].norm
+    if before not in d.language.speech.get("robot_pronouns", ()) or behind not in words.finite:
+        return None
+    if behind not in words.modals:
+        raise NotUnderstood(d.language.phrase("not_understood", part=d.words(at, verb + 1)))
+    itself: str | None = d.language.speech.get("of_robot", {}).get(before)
+    return itself
 
 
 @meaning("ask_in")
