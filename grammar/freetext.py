@@ -134,8 +134,6 @@ class Words:
     reported: frozenset[str]
     """Pronouns for those who are told of, which they do not say of themselves: "he", "her"."""
     until: frozenset[str]
-    events: Phrases
-    """Words before what is waited for: "as soon as"."""
     asked_too: re.Pattern[str] | None
     """A clause that goes on with what somebody is asked to do; None where an order looks the same:
     "ask Bob to wait and call"."""
@@ -217,7 +215,6 @@ def words_for(language: Language) -> Words:
             for word in language.speech.get(name, {}).get("you", ())
         ),
         until=single("until"),
-        events=phrases("events"),
         asked_too=re.compile(data["asked_too"]) if "asked_too" in data else None,
         asked_with=re.compile(data.get("asked_with", r"(?!)")),
         receivers=single("receivers"),
@@ -608,9 +605,6 @@ class Judge:
             at += 1
         if at >= len(self.tokens):
             return None
-        event = self.words.events.longest(self.all_norms, at)
-        if event and at + event < len(self.tokens) and self.tokens[at + event].capital:
-            return at  # "tell Alice that we start when Bob comes": who waits for him?
         if at == end:
             return None
         rest = self.tokens[at:]
