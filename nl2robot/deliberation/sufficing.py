@@ -13,8 +13,10 @@ SURE: Final = 0.3
 """How likely the model has to have found each token. Others take as long as the first did; below
 this, one of them is worth it."""
 
-SURE_OF_RULES: Final = 0.6
-"""How likely a draft of the rules has to be right, so that no language model is asked."""
+SURE_OF_RULES: Final = 0.5
+"""How likely a draft of the rules has to be right, so that no language model is asked. From here on
+784 of 849 programs for typed sentences are right and 811 of 891 for commands of a robot competition;
+below, 51 of 74 and 59 of 71."""
 
 
 def is_sure(turn: Turn, considered: Considered) -> bool:
