@@ -16,10 +16,10 @@ from typing import Final
 
 from grammar.chart import Leaf, Node
 from grammar.discourse import Steps
-from grammar.freetext import weighty_words
 from grammar.language import Language
 from grammar.lexicon import Lexicon, Name, Question
 from grammar.plan import Ask, Call, Number, Plan, Text
+from grammar.texts.words import weighty_words
 from grammar.tidy import nodes
 from grammar.tokens import Token
 

@@ -22,7 +22,6 @@ from grammar.company import in_company
 from grammar.coverage import in_manner, left_out, no_nouns, unheeded, unspoken
 from grammar.discourse import Discourse
 from grammar.errors import Ambiguous, NotUnderstood
-from grammar.freetext import Doubt, doubtful, words_for
 from grammar.language import Language, speech
 from grammar.lexicon import Lexicon
 from grammar.meanings.offers import with_offers_kept
@@ -49,6 +48,8 @@ from grammar.report_after_loop import told_when_all_are_asked
 from grammar.requests import Request
 from grammar.samples import nearest_phrases
 from grammar.slots import Slots
+from grammar.texts.judging import Doubt, doubtful
+from grammar.texts.words import words_for
 from grammar.tidy import Unbound, charging_last, is_one_of_each, returning, scoped, without_unused
 from grammar.tokens import COMMA, Token
 from grammar.trace import read

@@ -9,11 +9,11 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from typing import Final
 
-from grammar.freetext import words_for
 from grammar.inference import form_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.plan import Ask, Call, Number, Plan, Text
+from grammar.texts.words import words_for
 from grammar.tidy import nodes
 from grammar.tokens import Token
 from grammar.wordforms import singular

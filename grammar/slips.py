@@ -16,11 +16,11 @@ from collections.abc import Collection, Iterator
 from dataclasses import replace
 from typing import Final
 
-from grammar.freetext import words_for
 from grammar.language import Language
 from grammar.lexicon import Lexicon
 from grammar.names import names_of
 from grammar.refusals import signs
+from grammar.texts.words import words_for
 from grammar.tokens import Token, tokenise
 from grammar.wordforms import singular
 

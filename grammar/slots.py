@@ -13,12 +13,12 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from grammar.chart import CORRECTION, Corrected, Match, Slot
-from grammar.freetext import Judge
 from grammar.names import Names, Trie
 from grammar.numerals import Numerals
-from grammar.open_text import FREE_WORD, OpenText
 from grammar.phrases import Phrases
 from grammar.slips import command_words, plain_forms
+from grammar.texts.judging import Judge
+from grammar.texts.open_slots import FREE_WORD, OpenText
 from grammar.tokens import COMMA, Token
 from grammar.wordforms import singular
 

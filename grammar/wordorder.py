@@ -14,8 +14,8 @@ from typing import Any, Final
 
 from grammar.discourse import Discourse
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.names import names_of
+from grammar.texts.words import words_for
 from grammar.tokens import COLON, COMMA
 
 SHORTEST_VERB: Final = 4

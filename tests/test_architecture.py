@@ -199,7 +199,7 @@ FLOORS = (
 """The folders of `nl2robot/`, each of which knows only those before it."""
 LARGEST = 25
 """Modules of a folder that somebody can still look over."""
-TOO_LARGE = {"grammar": 71, "grammar/meanings": 110}
+TOO_LARGE = {"grammar": 69, "grammar/meanings": 110}
 """The rules, until a model has learned what they know: they may only become fewer."""
 
 

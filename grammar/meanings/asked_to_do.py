@@ -7,7 +7,6 @@ from dataclasses import replace
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing
 from grammar.errors import NotUnderstood
-from grammar.freetext import Judge
 from grammar.meanings.finding import speak_to
 from grammar.meanings.messages import told_to
 from grammar.meanings.persons import guest_for, is_me, person_me
@@ -17,6 +16,7 @@ from grammar.meanings.registry import meaning
 from grammar.meanings.requested import Request
 from grammar.plan import Call, Text
 from grammar.reminders.reminded import note_reminder
+from grammar.texts.judging import Judge
 from grammar.tokens import COMMA
 from grammar.wordorder import asked_of_you
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 from grammar.chart import Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.meanings.carrying import deliver
 from grammar.meanings.places import source_of
 from grammar.meanings.registry import meaning
 from grammar.meanings.several_things import last_deed, over_things
 from grammar.meanings.things import bring
 from grammar.slips import command_words
+from grammar.texts.words import words_for
 
 
 @meaning("bring_too")

@@ -15,7 +15,6 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, capital
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.meanings.about_guests import guest_in, guest_spoken_of, host_told, others_spoken_of
 from grammar.meanings.finding import go, speak_to
 from grammar.meanings.genders import gender_of_thing
@@ -31,6 +30,7 @@ from grammar.meanings.verb_forms import base_form
 from grammar.names import names_of
 from grammar.plan import Call, Recall, Text
 from grammar.reminders.reminded import note_reminder
+from grammar.texts.words import words_for
 from grammar.tokens import COMMA, STOP, Token
 from grammar.wordorder import direct_clause, is_direct
 

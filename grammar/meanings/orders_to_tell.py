@@ -11,7 +11,6 @@ import msgspec
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, Thing, Where
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.meanings.about_guests import host_told, who_is_told
 from grammar.meanings.absences import undelivered
 from grammar.meanings.answered_numbers import of_answers
@@ -58,6 +57,7 @@ from grammar.meanings.where_it_is import (
     where_it_is,
 )
 from grammar.plan import Ask, Call, Recall, Remember, Text, Value
+from grammar.texts.words import words_for
 from grammar.tidy import BODIES, mentions, nodes
 
 

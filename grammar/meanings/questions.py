@@ -10,7 +10,6 @@ from typing import Any, Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import ANYONE, Discourse, Steps, Thing, capital
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.meanings.answered import says_the_same
 from grammar.meanings.asking import Audience, asked, audience, put, remember_answer
 from grammar.meanings.finding import go
@@ -61,6 +60,7 @@ from grammar.plan import (
     Text,
     Value,
 )
+from grammar.texts.words import words_for
 from grammar.tokens import COMMA
 from grammar.wordforms import head_word, singular
 from grammar.wordorder import parted

@@ -16,7 +16,6 @@ import msgspec
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import Discourse, Steps, Thing, Where, as_value
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.meanings.genders import gender_of_thing
 from grammar.meanings.options import people_named
 from grammar.meanings.persons import is_me
@@ -25,6 +24,7 @@ from grammar.meanings.reports import Report
 from grammar.meanings.sources import all_there_are, told_where
 from grammar.meanings.speaking import sentence_form
 from grammar.plan import Ask, Call, Items, Text, Value
+from grammar.texts.words import words_for
 from grammar.tidy import replaced
 
 SUBJECTS: Final = ("person_ref", "place", "thing")

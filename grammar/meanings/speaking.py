@@ -9,12 +9,12 @@ from typing import Final
 from grammar.chart import Leaf, Node
 from grammar.discourse import Discourse, Steps, capital
 from grammar.errors import NotUnderstood
-from grammar.freetext import words_for
 from grammar.language import Language, languages, load_language
 from grammar.meanings.finding import speak_to
 from grammar.meanings.references import answers_in
 from grammar.meanings.registry import meaning
 from grammar.plan import Call, ForEach, Items, Number, Recall, Text, Value
+from grammar.texts.words import words_for
 from grammar.tidy import nodes
 
 

@@ -10,7 +10,6 @@ import msgspec
 
 from grammar.chart import Leaf, Node, what_it_means
 from grammar.discourse import ANYONE, Discourse, Steps, Thing
-from grammar.freetext import words_for
 from grammar.meanings.arrivals import may_be_another, names_somebody
 from grammar.meanings.asking_until import as_soon_as_answered, stops_asking
 from grammar.meanings.branches import if_
@@ -47,6 +46,7 @@ from grammar.plan import (
     Value,
     While,
 )
+from grammar.texts.words import words_for
 from grammar.tidy import LOOPS, gives, nodes
 
 TOLD: Final = frozenset({"ask_to", "say_that"})

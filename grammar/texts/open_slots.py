@@ -14,11 +14,11 @@ from itertools import takewhile
 from typing import Final
 
 from grammar.chart import Match
-from grammar.freetext import Judge
 from grammar.language import Language
 from grammar.phrases import Phrases
 from grammar.roles import ANYBODY
 from grammar.slips import command_words
+from grammar.texts.judging import Judge
 from grammar.tokens import COLON, COMMA, STOP, Token
 
 FREE_WORD: Final = 1.0

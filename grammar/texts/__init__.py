@@ -1,0 +1,1 @@
+"""Free texts: where they may end, and whether they are meant to be said."""
