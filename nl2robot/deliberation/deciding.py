@@ -115,7 +115,7 @@ def between(turn: Turn, exact: Chosen, other: Chosen | Open | Refusal) -> Chosen
             return _either(turn, theirs, exact) or other
         case Refusal(final=False):
             likely = confidence_alone(turn, exact.considered) >= LIKELY
-            return exact if likely else _really(turn, exact) or other
+            return exact if likely else _really(turn, exact) or exact  # it is read in any case
         case _:
             return other
 

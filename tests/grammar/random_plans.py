@@ -193,4 +193,5 @@ def can_be_written(plan: p.Plan) -> bool:
     return True
 
 
-plans = st.lists(steps(), max_size=6).map(lambda some: p.Plan(tuple(some))).filter(can_be_written)
+plans = st.deferred(lambda: st.lists(steps(), max_size=6).map(lambda some: p.Plan(tuple(some))))
+plans = plans.filter(can_be_written)
