@@ -123,6 +123,10 @@ class Judge:
 
         if self.tokens[start].kind == "quote":
             return doubt(start + 1, "said_or_done") if end > start + 1 else None
+        hesitations = self.language.words_called("hesitations")
+        for at in range(start, end):  # "that the, uh, the doctor is here": nobody says that again
+            if self.tokens[at].norm in hesitations:
+                return doubt(at, "not_understood")
         if leaf.slot == "remark":
             return doubt(start, "cannot_say") if self.calls_somebody(start, end) else None
         if not spoken and STOP in self.norms(start, end):  # a question ends where its sentence does

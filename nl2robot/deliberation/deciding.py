@@ -21,7 +21,7 @@ ACCEPTED: Final = 0.6
 """From this probability on a program is shown as understood."""
 ASKED: Final = 0.15
 """From this one on it is asked whether it was meant."""
-LIKELY: Final = 0.5
+LIKELY: Final = 0.3
 """From this one on a draft of the rules is shown of which no other planner knows anything."""
 CLOSE: Final = 0.6
 """A second that has so much of the votes of the first makes a question of them."""

@@ -183,7 +183,7 @@ def test_a_planner_that_is_sure_is_believed_against_one_that_is_not() -> None:
     assert between(turn(text), rules, model) is model
 
 
-@pytest.mark.parametrize(("likely", "shown"), [(0.7, True), (0.3, False)])
+@pytest.mark.parametrize(("likely", "shown"), [(0.7, True), (0.2, False)])
 def test_where_the_other_knows_nothing_what_is_unlikely_is_asked(
     likely: float, shown: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

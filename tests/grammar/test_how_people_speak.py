@@ -61,6 +61,19 @@ def test_when_it_is_wished_is_no_part_of_the_wish(language: str, words: str) -> 
     assert "say" not in (said(language, words).program or "")
 
 
+@pytest.mark.parametrize(
+    ("language", "words"),
+    [
+        ("en", "tell Bob that the uh the taxi is here"),
+        ("de", "sag Bob, dass das äh das Taxi da ist"),
+        ("fr", "dis à Bob que euh son taxi est là"),
+    ],
+)
+def test_nobody_is_told_how_somebody_hesitated(language: str, words: str) -> None:
+    found = said(language, words).program or ""
+    assert not load_language(language).words_called("hesitations") & set(found.split())
+
+
 BORROWED = {
     "en": ("Ask Bob if {} can borrow the stapler. If yes, bring it to me.", ["I", "we"]),
     "de": ("Frag Bob, ob {} den Locher haben {}. Wenn ja, bring ihn mir.", ["ich", "wir"]),

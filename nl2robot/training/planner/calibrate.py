@@ -35,6 +35,7 @@ from nl2robot.training.planner.corpus import files, load
 from nl2robot.training.planner.evaluate import Row, measure, scores, table
 from nl2robot.training.planner.examples import is_held_out
 from nl2robot.training.planner.export import file_digest
+from nl2robot.training.planner.noise import as_typed
 from nl2robot.translate.planners import installed_model, learned, planner
 from sim.world.loading import load_world
 
@@ -133,18 +134,29 @@ def tried(measured: Sequence[Row], planner: str) -> Iterator[str]:
 
 def read_by_somebody() -> list[Row]:
     """What rules made of sentences that people have typed, where it is what somebody has judged by
-    reading it (`typed.jsonl`): what became something else since is not known to be right."""
-    rules, worlds = planner("grammar"), functools.cache(_world)
+    reading it (`typed.jsonl`): what became something else since is not known to be right. And what
+    they make of each as fingers in a hurry type it: right if that is the same."""
+    worlds, chance = functools.cache(_world), random.Random(2)
     rows: list[Row] = []
     for line in TYPED.read_text("utf-8").splitlines():
         typed = json.loads(line)
         lexicon = worlds(typed["world"]).lexicon(typed["language"])
-        turn = Turn(typed["say"], lexicon, load_language(typed["language"]), Context())
-        answer = rules.plan(turn, Watch())
-        made = consider(turn, answer.drafts[0]) if isinstance(answer, Drafts) else None
-        if made is not None and made.program == typed["program"]:
-            known = features_alone(turn, made)
-            rows.append({"features": known, "right": [typed["right"]], "read": True})
+        names = frozenset(
+            word.lower()
+            for each in (*lexicon.people, *lexicon.places)
+            for word in each.name.split()
+        )
+        hurried = as_typed(typed["say"], chance, names)
+        for say in dict.fromkeys((typed["say"], hurried)):
+            turn = Turn(say, lexicon, load_language(typed["language"]), Context())
+            answer = planner("grammar").plan(turn, Watch())
+            made = consider(turn, answer.drafts[0]) if isinstance(answer, Drafts) else None
+            same = made is not None and made.program == typed["program"]
+            if say == typed["say"] and not same:
+                break
+            if made is not None:
+                known = features_alone(turn, made)
+                rows.append({"features": known, "right": [typed["right"] and same], "read": True})
     return rows
 
 
