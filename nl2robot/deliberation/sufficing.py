@@ -14,10 +14,10 @@ SURE: Final = 0.3
 this, one of them is worth it."""
 
 SURE_OF_RULES: Final = 0.4
-"""How likely a draft of the rules has to be right, so that no language model is asked; whatever does
-something else than an author's program was counted as wrong. From here on 828 of 912 programs for
-commands of a robot competition are right and 53 of 56 for everyday errands, below 42 of 50 and 26
-of 43; of typed sentences, to which it is fitted, 788 of 851 and 47 of 72."""
+"""How likely a draft of the rules has to be right, so that no language model is asked; whatever
+does something else than an author's program was counted as wrong. From here on 828 of 912 programs
+for commands of a robot competition are right and 53 of 56 for everyday errands, below 42 of 50 and
+26 of 43; of typed sentences, to which it is fitted, 788 of 851 and 47 of 72."""
 
 
 def is_sure(turn: Turn, considered: Considered) -> bool:
