@@ -358,19 +358,19 @@ class Discourse:
         self.variables |= {candidate}
         return candidate
 
-    def names(self, *names: str) -> None:
+    def has_named(self, *names: str) -> None:
         """Somebody was named."""
         self.people = replace(self.people, named=(*self.people.named, *names))
 
-    def first_of_all(self, *steps: Step) -> None:
+    def need_first(self, *steps: Step) -> None:
         """The condition that is made needs these steps before it can be checked."""
         self.command = replace(self.command, pending=(*self.command.pending, *steps))
 
-    def resolves(self, tokens: Iterable[int]) -> None:
+    def resolve(self, tokens: Iterable[int]) -> None:
         """These tokens of a free text stand for what is only known when the program runs."""
         self.command = replace(self.command, resolved=self.command.resolved | {*tokens})
 
-    def notes(self, what: tuple[Any, ...], variable: str) -> None:
+    def keep_note(self, what: tuple[Any, ...], variable: str) -> None:
         """Something of a poll is noted in a variable."""
         self.answers = replace(self.answers, notes={**self.answers.notes, what: variable})
 

@@ -71,9 +71,13 @@ class Scene:
         """Somebody was spoken of: it is "her"."""
         return replace(self, person=person, thing_last=False)
 
+    def with_it_of(self, before: Scene) -> Scene:
+        """ "It" is what it was in another scene."""
+        return replace(self, thing=before.thing, thing_last=before.thing_last)
+
     def speaking_as(self, before: Scene) -> Scene:
         """Whatever was spoken of since, "it" and "her" are what they were."""
-        return replace(self, thing=before.thing, person=before.person, thing_last=before.thing_last)
+        return replace(self.with_it_of(before), person=before.person)
 
     def arrived(self, place: Value | None) -> Scene:
         """The robot is at a place, and that is "there"."""

@@ -75,14 +75,13 @@ class Prepared:
                     skips.setdefault(at, []).append((at + len(filler), FILLER_PASSED_OVER))
             if any((other,) in self.language.fillers for other in self.corrections.get(at, ())):
                 skips.setdefault(at, []).append((at + 1, CORRECTION))  # "pleas"
-            again = self._begun_again(at)
+            again = self._begun_again(words, at)
             if again is not None:
                 skips.setdefault(at, []).append((again, FALSE_START))
         return skips
 
-    def _begun_again(self, at: int) -> int | None:
+    def _begun_again(self, words: list[str], at: int) -> int | None:
         """Where the words that begin here are said once more: "go to, uh, go to the lab"."""
-        words = [token.norm for token in self.tokens]
         hesitations = self.language.words_called("hesitations")
         for end in range(at + 1, min(at + MOST_BEGUN, len(words)) + 1):
             if self.tokens[end - 1].kind == "mark" or words[end - 1] in hesitations:

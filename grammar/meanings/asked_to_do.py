@@ -130,6 +130,6 @@ def manner_within(d: Discourse, node: Node, verb: Leaf | Node | None) -> str:
         words = tuple(d.language.tokens_of(way))
         for at in range(max(begun, default=node.start), last + 1):
             if tuple(d.norms(at, min(at + len(words), len(d.tokens)))) == words:
-                d.resolves(range(at, at + len(words)))
+                d.resolve(range(at, at + len(words)))
                 return d.words(at, at + len(words))
     return ""

@@ -180,7 +180,7 @@ def is_touched(d: Discourse, node: Node) -> Condition:
     button = Text(d.language.phrase("button"))
     nobody = Remember(touched.name, Text(""))
     showing = Call("touch", {"options": Items((button,))}, save_as=touched.name)
-    d.first_of_all(Try((showing,), (nobody,)))
+    d.need_first(Try((showing,), (nobody,)))
     return Compare(touched, "==", button)
 
 
@@ -200,7 +200,7 @@ def is_awaited(d: Discourse, node: Node) -> Condition:
     thing = noun_of(d, node)
     if thing.place is not None and thing.place != d.scene.at:
         d.went(thing.place)
-        d.first_of_all(Call("goto", {"place": thing.place}))
+        d.need_first(Call("goto", {"place": thing.place}))
     d.scene = replace(d.scene, person=replace(thing, here=True))
     seconds = as_value(d.get(node, "seconds"))
     waited = Holds(Ask("wait_for", {"thing": sought(d, thing), "timeout": seconds}))
@@ -215,7 +215,7 @@ def is_heard(d: Discourse, node: Node) -> Condition:
     if d.answers.heard is None:
         name = d.variable("heard")
         silence = Remember(name, Text(""))
-        d.first_of_all(Try((Call("listen", save_as=name),), (silence,)))
+        d.need_first(Try((Call("listen", save_as=name),), (silence,)))
         heard: Value = Recall(name)
     else:
         heard = Recall(d.answers.heard)

@@ -185,9 +185,7 @@ def reversed_(d: Discourse, node: Node) -> Steps:
     ):  # "put the cup here after you wash it"
         before = d.scene
         d.sequence(lambda: d.done.extend(d.build(later)))
-        thing, thing_last = d.scene.thing, d.scene.thing_last
-        d.scene = before
-        d.scene = replace(d.scene, thing=thing, thing_last=thing_last)
+        d.scene = before.with_it_of(d.scene)
     at = len(d.done)
     if not done_already(d, node):
         d.done.extend(d.build(earlier))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Final
 
 from grammar.chart import Node, what_it_means
@@ -91,9 +90,9 @@ def worn(d: Discourse, node: Node) -> str:
 @meaning("between")
 def between(d: Discourse, node: Node) -> str:
     """ "between the cup and the box"."""
-    remembered, last = d.scene.thing, d.scene.thing_last
+    before = d.scene
     first, second = d.get(node, "first"), d.get(node, "second")
-    d.scene = replace(d.scene, thing=remembered, thing_last=last)
+    d.scene = d.scene.with_it_of(before)
     return d.language.phrase("between", first=first.text, second=second.text)
 
 
@@ -111,9 +110,9 @@ def side_of(d: Discourse, node: Node) -> list[Where | str]:
 @meaning("relation")
 def relation(d: Discourse, node: Node) -> Where | str:
     """ "behind the cup": a descriptor; with its place if the other thing has one."""
-    remembered, last = d.scene.thing, d.scene.thing_last
+    before = d.scene
     other: Thing = d.get(node, "other")
-    d.scene = replace(d.scene, thing=remembered, thing_last=last)
+    d.scene = d.scene.with_it_of(before)
     words = f"{node.production.fixed['relation']} {other.text}"
     if other.place is not None or other.furniture is not None:
         return Where(other.place, other.furniture, words)

@@ -38,14 +38,14 @@ def _hangs_on(d: Discourse) -> Survey | None:
 def _noted(d: Discourse, first: Survey) -> Value:
     key = ("said in all", id(first.call))
     if key not in d.answers.notes:
-        d.notes(key, d.variable("said"))
+        d.keep_note(key, d.variable("said"))
         note(d, first.call, [Remember(d.answers.notes[key], _answer(first.call))], [])
     said = d.answers.notes[key]
     for each in asked_so_far(d):
         further = ("said further", id(each.call))
         if each is first or each.who != first.who or further in d.answers.notes:
             continue
-        d.notes(further, said)
+        d.keep_note(further, said)
         both = Sentence((_answer(first.call), Text(", "), _answer(each.call)))
         note(d, each.call, [Remember(said, both)], [])
     return Recall(said)

@@ -69,7 +69,7 @@ def say_that(d: Discourse, node: Node) -> Steps:
     more = node.parts.get("more")  # "that the doctor is here and that she can come in"
     if more is not None:
         text, end = f"{text} {told_to(d, more, person)}", more.end
-    d.names(*people_named(d, part.start, end))
+    d.has_named(*people_named(d, part.start, end))
     saying = Call("say", {"text": answers_in(d, text, part.start, end)})
     if is_me(person):
         return [*back_to_speaker(d), saying]

@@ -222,7 +222,7 @@ def tell_why(d: Discourse, node: Node) -> Steps:
     """ "and let Bob know, so that he can go with her": what was found out; why is left as it is."""
     why = node.parts["why"]
     d.background += (d.words(why.start, why.end),)
-    d.resolves(range(why.start, why.end))
+    d.resolve(range(why.start, why.end))
     return tell_that(d, node)
 
 

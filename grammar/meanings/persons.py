@@ -129,7 +129,7 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
     host = host_here(d, node)
     if host is not None:
         d.called_so(host, node.start, node.end)
-        d.names(host.text)
+        d.has_named(host.text)
         d.scene = replace(d.scene, person=host)
         return host
     if (
@@ -162,7 +162,7 @@ def person_pronoun(d: Discourse, node: Node) -> Thing:
         return replace(d.scene.person, here=not elsewhere and (met or not d.scene.person.known))
     owner = owner_of(d)
     if owner is not None:
-        d.names(owner.value)
+        d.has_named(owner.value)
         host = Thing(owner, known=True, person=True, here=True)
         d.called_so(host, node.start, node.end)
         return host

@@ -46,7 +46,7 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
         place = d.scene.place  # "is the library free? If it is, ...": told where it was asked
     if place is not None and place != d.scene.at:
         d.went(place)
-        d.first_of_all(Call("goto", {"place": place}))
+        d.need_first(Call("goto", {"place": place}))
     d.branch = replace(d.branch, room=place or d.scene.at or d.scene.place)
     trait: Trait = d.get(node, "place_trait")
     checked = checked_just_now(d, trait) if place is None else None
@@ -57,7 +57,7 @@ def trait_holds(d: Discourse, node: Node) -> Condition:
             d.branch, met=Meeting(trait.thing, holds=not trait.denied, sought=not in_round(d))
         )
         return Not(looked) if trait.denied else looked
-    d.first_of_all(*trait.first)
+    d.need_first(*trait.first)
     if trait.thing is not None and in_round(d):
         d.branch = replace(d.branch, met=Meeting(trait.thing, holds=not trait.denied))
     return negated(trait.condition) if none else trait.condition

@@ -103,7 +103,7 @@ def place_where(d: Discourse, node: Node) -> Thing:
     before = d.scene
     found: Thing = d.get(node, "thing") or d.get(node, "person_ref")
     if stands_behind_it(d, node):
-        d.scene = replace(d.scene, thing=before.thing, thing_last=before.thing_last)
+        d.scene = d.scene.with_it_of(before)
     return found
 
 

@@ -116,7 +116,7 @@ def _kept(d: Discourse, key: tuple[Any, ...], name: str) -> tuple[Recall, bool]:
     key = (*key, *(id(survey.call) for survey in asked_before(d)))
     if key in d.answers.notes:
         return Recall(d.answers.notes[key]), False
-    d.notes(key, d.variable(name))
+    d.keep_note(key, d.variable(name))
     return Recall(d.answers.notes[key]), True
 
 
@@ -382,7 +382,7 @@ def told_as_asked(d: Discourse, start: int, end: int) -> Told | None:
         return None
     if in_loop(d, survey.call) or several_asked(d):
         return polled(d, "answers", None)
-    d.resolves(range(start, end))
+    d.resolve(range(start, end))
     return Told([Call("say", {"text": Recall(survey.call.save_as)})], [])
 
 

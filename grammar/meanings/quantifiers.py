@@ -274,7 +274,7 @@ def all_of(d: Discourse, node: Node, part: Node) -> bool:
         return True  # "the cups in the meeting rooms"
     before = d.scene
     thing: Thing = d.build(part)
-    d.scene = replace(d.scene, thing=before.thing, thing_last=before.thing_last)
+    d.scene = d.scene.with_it_of(before)
     in_round = d.loops.in_loop and isinstance(d.scene.at, Recall)
     somewhere = in_round or thing.place is not None or bool(thing.furniture)
     # Where the world knows no such thing, its plural may be the name of one: "the pickles".

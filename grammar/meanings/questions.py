@@ -133,7 +133,7 @@ def ask_one(d: Discourse, node: Node, person: Thing | None) -> Steps:
             d.scene, place=Text(spoken_of[0])
         )  # "ask whether they want to see the lab; take them there"
     # "ask Bob whether Alice is in; if so, tell her ..."
-    d.names(*people_named(d, question.start, question.end))
+    d.has_named(*people_named(d, question.start, question.end))
     if whom.many and asks_for_some(d, question):
         d.answers = replace(d.answers, polled_for="who")
     if node.production.fixed.get("vote"):

@@ -33,7 +33,7 @@ def answer_named(d: Discourse, node: Node) -> Told:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     value = answer_to(d, survey)
-    d.resolves(range(part.start, part.end))
+    d.resolve(range(part.start, part.end))
     if value is None:
         return polled(d, "answers", None)
     return Told([Call("say", {"text": value})], [])
@@ -129,7 +129,7 @@ def answers_in(d: Discourse, text: str, start: int, end: int) -> Value:
             parts.append(Text(before))
         parts.append(value)
         rest = rest[found.end() :]
-        d.resolves(range(first, last))
+        d.resolve(range(first, last))
     if not parts:
         return Text(text)
     if rest:

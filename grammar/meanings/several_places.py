@@ -128,12 +128,7 @@ def over_place_where(d: Discourse, node: Node, thing: Thing, one: One) -> Steps:
     place = Recall(d.variable("place"))
     d.scene = d.scene.arrived(place)
     if behind_it:
-        d.scene = replace(
-            d.scene,
-            thing=before.thing,
-            thing_last=before.thing_last,
-            at=place if held else None,
-        )
+        d.scene = replace(d.scene.with_it_of(before), at=place if held else None)
     outer = d.loops.at_people
     d.loops = replace(d.loops, at_people=True)  # what is brought there need not be there
     body = one(place)

@@ -68,7 +68,7 @@ def so_in(d: Discourse, node: Node, how: str) -> Condition:
     so = such.trait.condition if how != "all" else negated(such.trait.condition)
     noted = If(so, (Collect(found, Recall(such.variable)),))
     going = round_of(d, such.places, [*such.trait.first, noted], such.variable)
-    d.first_of_all(Remember(found, Items(())), going)
+    d.need_first(Remember(found, Items(())), going)
     d.scene = replace(d.scene.wandered(), away=True)
     condition = enough(d, node, how, Length(Recall(found)), such.places)
     named = d.say("such_places", places=Recall(found))
@@ -88,7 +88,7 @@ def so_in(d: Discourse, node: Node, how: str) -> Condition:
 def one_such(d: Discourse, such: Such) -> Condition:
     """The first place that is so is where the robot stays, and what "there" means."""
     going, place, none = first_such(d, such)
-    d.first_of_all(*going)
+    d.need_first(*going)
     d.round = replace(d.round, such=place.name)
     there, nowhere = d.say("it_is_there", place=place), d.say("no_such_places")
     claims = Claims(negated(none), there, nowhere)

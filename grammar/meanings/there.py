@@ -67,7 +67,7 @@ def looked_for(d: Discourse, node: Node, search: bool) -> Condition:
         raise NotUnderstood(d.language.phrase("where_is_there"), gap=(node.start, node.end))
     host = host_of_visit(d, thing)
     if host is not None:  # "take him to Clara's office. If she is not there, ..."
-        d.names(host.text)
+        d.has_named(host.text)
         thing = host
     survey: Survey | None = d.answers.surveys[-1] if d.answers.surveys else None
     if not node.production.fixed.get("it"):
@@ -299,7 +299,7 @@ def _so_many(d: Discourse, thing: Thing, number: int, operator: str) -> Compare:
         return Compare(known, operator, Number(number))
     if thing.place is not None and thing.place != d.scene.at:
         d.went(thing.place)
-        d.first_of_all(Call("goto", {"place": thing.place}))
+        d.need_first(Call("goto", {"place": thing.place}))
     if thing.person:
         thing = replace(thing, count=None)
         d.scene = replace(d.scene, person=replace(thing, plural=True, place=None, here=True))

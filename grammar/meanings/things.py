@@ -502,7 +502,7 @@ def scan(d: Discourse, node: Node) -> Steps:
         steps = look_for(d, thing)
     elif thing is not None and thing.here:  # the code is what counts, whatever it is on
         part = node.parts["thing"]
-        d.resolves(range(part.start, part.end))
+        d.resolve(range(part.start, part.end))
     d.answers = replace(d.answers, code=d.variable("code"), last=None)
     d.reports = replace(d.reports, last=None)
     return [*steps, Call("scan", {}, save_as=d.answers.code)]

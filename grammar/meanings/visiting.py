@@ -185,7 +185,7 @@ def place_of_answer(d: Discourse, node: Node) -> Value:
             d.language.phrase("not_understood", part=words), gap=(node.start, node.end)
         )
     if part is not None:
-        d.resolves(range(part.start, part.end))
+        d.resolve(range(part.start, part.end))
     d.scene = replace(d.scene, place=place)
     return place
 

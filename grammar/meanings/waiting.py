@@ -46,11 +46,10 @@ from grammar.plan import (
     Value,
     While,
 )
+from grammar.texts.judging import MESSAGES
 from grammar.texts.words import words_for
 from grammar.tidy import LOOPS, gives, nodes
 
-TOLD: Final = frozenset({"ask_to", "say_that"})
-"""Meanings whose text is passed on to somebody."""
 LOOK_EVERY: Final = 10
 """Seconds between two looks at a condition that is waited for."""
 
@@ -145,7 +144,7 @@ def told_with(part: Leaf | Node, behind: Leaf | Node) -> Node | None:
     if isinstance(part, Leaf):
         return None
     told = part.parts.get("text")
-    if part.means in TOLD and isinstance(told, Leaf) and told.slot == "text":
+    if part.means in MESSAGES and isinstance(told, Leaf) and told.slot == "text":
         if told.end > behind.start:
             return None
         return _longer(part, {"text": replace(told, end=behind.end)})
@@ -159,7 +158,7 @@ def of_others(d: Discourse, told: Node, condition: Leaf | Node) -> bool:
     told: "tell Bob that lunch is ready when you see him", "... when he comes"."""
     if words_for(d.language).addressing.intersection(d.norms(condition.start, condition.end)):
         return False
-    while told.means not in TOLD:
+    while told.means not in MESSAGES:
         told = max((each for each in told.parts.values() if isinstance(each, Node)), key=_end)
     listener, who = told.parts.get("person_ref"), condition
     while isinstance(who, Node) and who.means != "person_pronoun" and who.parts:

@@ -27,8 +27,10 @@ SPOKEN: Final = frozenset({"say", "say_that"})
 WRITTEN: Final = frozenset({"show"})
 """Meanings whose text is shown: doubted where it names something instead: "the lunch menu"."""
 REQUESTED: Final = frozenset({"ask_to"})
-TOLD: Final = REQUESTED | {"say_that", "ask"}
-"""Meanings by which something is passed on to somebody."""
+MESSAGES: Final = REQUESTED | {"say_that"}
+"""Meanings whose text is passed on to somebody."""
+TOLD: Final = MESSAGES | {"ask"}
+"""Those by which anything is."""
 ANSWERS: Final = frozenset({"option_words", "said_so"})
 ANSWERED: Final = ANSWERS | {"answered"}
 INFINITIVE_WITHIN: Final = 5

@@ -9,7 +9,7 @@ from tests.grammar.test_kinds import program, said
 
 GO = {"en": "go to the pharmacy", "de": "fahr zur Apotheke", "fr": "va à la pharmacie"}
 CALLS = {
-    "en": ["Say, could you {}?", "Tell me, can you {}?", "You know what, {}", "By the way, {}"],
+    "en": ["Say, could you {}?", "You know what, {}", "Hang on, tell me, can you {}?"],
     "de": ["Sag mal, {}", "Hören Sie, {}", "Pass auf, {}", "Übrigens, {}"],
     "fr": ["Dites donc, {}", "Dis voir, {}", "Tiens, {}", "Au fait, {}"],
 }

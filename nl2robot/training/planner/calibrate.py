@@ -69,12 +69,7 @@ def fitted(measured: Sequence[Row], planner: str) -> dict[str, float]:
     used = _used(measured, planner)
     x = np.array([[each["features"].get(name, 0.0) for name in used] for each in measured])
     y = np.array([_right(each, planner) for each in measured])
-    counts = np.array(
-        [
-            1.0 if each.get("read") else OF_THE_CORPUS if planner == "grammar" else 1.0
-            for each in measured
-        ]
-    )
+    counts = np.array([_counts(each, planner) for each in measured])
     middle, wide = x.mean(0), x.std(0) + 1e-9
     standard = (x - middle) / wide
 
@@ -104,6 +99,10 @@ def _right(each: Row, planner: str) -> float:
     program, a share is right, too."""
     also_right = RIGHT_IN_ANOTHER_WAY if planner == "model" else 0.0
     return 1.0 if each["right"][0] else also_right
+
+
+def _counts(each: Row, planner: str) -> float:
+    return OF_THE_CORPUS if planner == "grammar" and not each.get("read") else 1.0
 
 
 def probability(weights: dict[str, float], each: Row) -> float:
