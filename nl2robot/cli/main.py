@@ -73,14 +73,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # `nl2robot log | head`
         status = ExitStatus.OK
     except (KeyboardInterrupt, Exception) as error:  # noqa: BLE001 - each becomes a sentence
+        if arguments is None:
+            # It ends; whoever presses Ctrl-C twice wants no more than that.
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
         if "--debug" in given:
             traceback.print_exc()
         failures = _failures()
         sentence, status = failures.explained(error)
-        if arguments is None and status == ExitStatus.INTERRUPTED:
-            # It ends; whoever presses Ctrl-C twice wants no more than that.
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
         print(failures.told(sentence, given), file=sys.stderr)
+        if arguments is None and status != ExitStatus.INTERRUPTED:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
     _let_go_of_output()
     return status
 

@@ -10,8 +10,10 @@ be read by another program.
 
 from __future__ import annotations
 
+import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from grammar.planning.planner import Interrupted, Watch
@@ -36,6 +38,20 @@ class GivenUp(UserError):
         super().__init__(words_in(language)["given_up"], ExitStatus.INTERRUPTED)
 
 
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Ctrl-C is not heard meanwhile: whoever presses it twice wants no more than once, and what
+    puts the terminal back as it was must not be left half done."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
 class Waiting:
     """Shows how far a language model is, once one is asked; until then, nothing. Any thread may
     tell it."""
@@ -54,7 +70,7 @@ class Waiting:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with self._lock:
+        with undisturbed(), self._lock:
             self._over = True
             if self._live is not None:
                 self._live.stop()
@@ -114,7 +130,8 @@ def thought_aloud(think: Callable[[Watch], T], language: str) -> T:
         try:
             return thought.result()
         except (KeyboardInterrupt, Interrupted) as error:
-            thought.give_up()
+            with undisturbed():
+                thought.give_up()
             if not waiting.begun:
                 raise
             raise GivenUp(language) from error

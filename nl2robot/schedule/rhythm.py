@@ -22,6 +22,7 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 import msgspec
 
 from nl2robot.errors import UserError
+from robot_api.local_time import local_zone
 from robot_api.moments import first_shown
 
 if TYPE_CHECKING:
@@ -126,7 +127,12 @@ def next_begin(rhythm: Rhythm | None, after: float) -> datetime | None:
     """The same by the clocks there: what a dry run as of its next time begins at. None for never,
     and for what no clock begins."""
     due = next_time(rhythm, after) if rhythm is not None else None
-    return local(due, rhythm.zone) if rhythm is not None and due is not None else None
+    return shown_at(due, rhythm) if due is not None else None
+
+
+def shown_at(moment: float, rhythm: Rhythm | None) -> datetime:
+    """What the clocks of a rhythm show at that moment; those here, for what has none."""
+    return local(moment, rhythm.zone if rhythm is not None else local_zone())
 
 
 def times(rhythm: Rhythm, after: float | None = None) -> Iterator[float]:

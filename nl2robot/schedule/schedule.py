@@ -32,7 +32,15 @@ from nl2robot.schedule.appointments import (
 from nl2robot.schedule.book import Book, BookError
 from nl2robot.schedule.findings import encoded, findings_of
 from nl2robot.schedule.handing import Company
-from nl2robot.schedule.rhythm import Rhythm, checked, local, next_begin, next_time, times
+from nl2robot.schedule.rhythm import (
+    Rhythm,
+    checked,
+    local,
+    next_begin,
+    next_time,
+    shown_at,
+    times,
+)
 from nl2robot.schedule.telling import outcome, told, trouble, when
 from nl2robot.schedule.triggers import Trigger
 from nl2robot.schedule.triggers import checked as checked_trigger
@@ -376,7 +384,9 @@ class Schedule:
                 "The program was changed after its review. Review it again, then approve it."
             )
         check = company.check if company is not None else self._check
-        review = check(program, language, at=next_begin(rhythm, self.clock()))
+        now = self.clock()
+        at = next_begin(rhythm, now) or shown_at(now, rhythm)
+        review = check(program, language, at=at)
         errors = [each for each in review.findings if each.severity == "error"]
         if errors:
             raise AccessDenied(

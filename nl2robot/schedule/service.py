@@ -31,6 +31,7 @@ from nl2robot.schedule.findings import decoded, findings_of, news
 from nl2robot.schedule.handing import Handing
 from nl2robot.schedule.lookout import Ask, Lookout
 from nl2robot.schedule.outcomes import Outcome, asking_of, outcomes
+from nl2robot.schedule.rhythm import shown_at
 from nl2robot.schedule.schedule import FILE, Checks, Schedule
 from nl2robot.schedule.telling import told, trouble
 from nl2robot.schedule.triggers import Trigger, checked, of_others, possible
@@ -282,11 +283,12 @@ class Timekeeper:
         except (AccessDenied, RobotError) as error:
             clerk.refused(begin, str(error))
 
-    @staticmethod
-    def _changed(clerk: Clerk, begin: Begin, check: Checks) -> bool:
-        """Whether its review finds something that was not there when it was approved."""
+    def _changed(self, clerk: Clerk, begin: Begin, check: Checks) -> bool:
+        """Whether its review finds something that was not there when it was approved. Both are as
+        of the time that the appointments go by: a simulated robot's own may run ahead of it."""
         kept = begin.appointment
-        found = findings_of(check(kept.program, kept.language))
+        at = shown_at(self._timing.clock(), kept.rhythm)
+        found = findings_of(check(kept.program, kept.language, at=at))
         new = news(decoded(kept.reviewed), found)
         if new:
             clerk.changed(begin, new)

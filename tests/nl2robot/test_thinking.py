@@ -3,6 +3,7 @@ up."""
 
 import io
 import json
+import signal
 import sys
 import threading
 from pathlib import Path
@@ -242,6 +243,29 @@ def test_the_program_grows_on_the_screen_and_goes_when_it_is_there(monkeypatch) 
     assert 'say("9")' not in shown, "only what fits on the screen"
     waiting(Progress("writing", "robot.late()"))
     assert screen.getvalue() == shown
+
+
+class Impatient(io.StringIO):
+    """A screen at which somebody presses Ctrl-C once more, just when it is cleared."""
+
+    presses = False
+
+    def write(self, text: str) -> int:
+        if self.presses:
+            signal.raise_signal(signal.SIGINT)
+        return super().write(text)
+
+
+def test_ctrl_c_once_more_leaves_the_terminal_as_it_was(monkeypatch) -> None:
+    monkeypatch.setenv("TERM", "xterm")
+    screen, errors = Impatient(), sys.stderr
+    with Waiting("en", Console(file=screen, force_terminal=True)) as waiting:
+        waiting(Progress("writing", PROGRAM))
+        screen.presses = True
+    screen.presses = False
+    assert sys.stderr is errors
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
 
 
 class Typing(Terminal):

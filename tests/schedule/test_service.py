@@ -5,6 +5,7 @@ from __future__ import annotations
 import sqlite3
 import subprocess
 import sys
+from datetime import datetime
 from typing import Any
 
 import pytest
@@ -141,6 +142,18 @@ def test_a_program_that_runs_makes_it_wait(ward: Ward) -> None:
     ward.clock.set("2026-11-30 08:31")
     assert "another program was running" in ward.notice("missed")["told"]["en"]
     ward.robot.request("program.stop")
+
+
+def test_a_simulation_whose_clock_runs_ahead_is_reviewed_by_the_one_on_the_wall(ward: Ward) -> None:
+    """With `--speed 100` it is soon night in there, and no greeting was approved for the night."""
+    ward.add()
+    happens = {"what": "pressed", "text": "Say hello"}
+    ward.add(rhythm=None, trigger=happens)
+    ward.station.simulation.set_clock(datetime(2026, 11, 30, 23))
+    ward.clock.set("2026-11-30 08:00")
+    ward.until(["done"])
+    ward.ask("press", button="Say hello")
+    ward.until(["done", "done"])
 
 
 def test_a_zone_that_was_drawn_since_asks_for_a_new_approval(ward: Ward) -> None:
