@@ -79,7 +79,9 @@ def serving(
     models: bool = False,
     program: Sequence[str] = ("-m", "nl2robot.cli.main", "serve"),
 ) -> Iterator[Served]:
-    """Serve with these options of `nl2robot serve`; `models`: with the speech models there are."""
+    """Serve with these options of `nl2robot serve`; `models`: with the speech models there are.
+    Where nothing else is said, a simulated robot begins at ten in the morning: what is said at
+    night is reviewed in another way."""
     environment = {**os.environ, "NL2ROBOT_HOME": str(home)}
     if models:
         from nl2robot.paths import data_folder
@@ -89,6 +91,8 @@ def serving(
             home.mkdir(parents=True, exist_ok=True)
             (home / "models").symlink_to(there)
     given = options if "--port" in options else ("--port", "0", *options)
+    if not {"--clock", "--robot"} & set(options):
+        given = (*given, "--clock", "10:00")
     process = subprocess.Popen(
         [sys.executable, *program, *given],
         stdin=subprocess.PIPE,

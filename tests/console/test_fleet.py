@@ -95,6 +95,7 @@ def test_an_appointment_for_the_best_of_the_fleet_is_seen_at_both_consoles(
     page.get_by_role("button", name="Later …").click()
     form = page.locator("dialog.times-form")
     form.locator("select[name=robot]").select_option("any")
+    form.locator("input[type=time]:enabled").fill("11:00")
     form.get_by_role("button", name="Approve for these times").click()
     expect(form).to_have_count(0)
     page.goto(served.url + "/schedule")

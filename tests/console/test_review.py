@@ -10,6 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.console.conftest import Look, Picture, Served
 from tests.console.test_desk import approve, read_all, say
+from tests.console.test_looks import CONTRAST
 
 SIZES = [
     (1440, 900, 1.0),
@@ -223,6 +224,13 @@ def test_what_did_not_come_to_its_end_is_changed_or_insisted_on(
     expect(page.locator(".cm-content")).to_be_focused()
     page.get_by_role("button", name=anyway).click()
     expect(page.locator("#run-panel")).to_have_attribute("data-state", "failed")
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_a_line_that_is_marked_is_as_easy_to_read_as_the_others(look: Look, dark: bool) -> None:
+    page = laid_before(look, (1440, 900, 1.0), FAILS, dark=dark)
+    expect(page.locator(".line-risk span").first).to_be_visible()
+    assert page.evaluate(CONTRAST) == []
 
 
 @pytest.mark.parametrize(

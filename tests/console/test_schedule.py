@@ -362,6 +362,17 @@ def test_who_looks_on_sees_all_of_it_and_changes_nothing(look: Look, ward: Ward)
     expect(it.locator("form")).to_have_count(0)
 
 
+def test_who_plans_late_in_the_evening_plans_for_tomorrow(look: Look, ward: Ward) -> None:
+    ward.clock("2026-12-02T23:10")
+    page = schedule(look)
+    page.goto(f"{ward.served.url}/?program=robot.say(%22Tea%22)")
+    read_all(page)
+    page.locator("#at-times").click()
+    page.locator(".times-form select[name=kind]").select_option("once")
+    expect(page.locator(".times-form input[type=time]:enabled")).to_have_value("00:00")
+    expect(page.locator(".times-form input[type=date]:enabled").first).to_have_value("2026-12-03")
+
+
 @pytest.mark.parametrize("language", ["de", "fr"])
 def test_the_form_and_the_page_fit_a_phone_in_every_language(
     look: Look, ward: Ward, language: str

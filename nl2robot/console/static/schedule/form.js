@@ -68,9 +68,10 @@ class Form {
     this.kind = element('select', {class: 'field', name: 'kind'}, ...kinds);
     if (!said?.rhythm) this.kind.value = 'daily';
     const hour = String((Number(at.slice(0, 2)) + 1) % 24).padStart(2, '0');
+    const day = hour === '00' ? dayAfter(today, 1) : today;
     const date = (value) => element('input', {type: 'date', class: 'field', value, min: today, required: true});
     const time = (value) => element('input', {type: 'time', class: 'field', value, required: true});
-    Object.assign(this, {day: date(today), time: time(`${hour}:00`), from: time('08:00'), to: time('17:00')});
+    Object.assign(this, {day: date(day), time: time(`${hour}:00`), from: time('08:00'), to: time('17:00')});
     this.minutes = element('input', {type: 'number', class: 'field', min: 5, max: 720, value: 30, required: true});
     this.days = WEEKDAYS.map((day, index) => element('input', {type: 'checkbox', value: day, 'aria-label': this.dayName(index, 'long')}));
     this.until = date(dayAfter(today, HOLDS));
