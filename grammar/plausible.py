@@ -129,17 +129,17 @@ def _either(one: Hand, other: Hand) -> Hand:
 def _finds_out_twice(plan: Plan) -> bool:
     """Whether two rounds in a row go over the same places or people, or the second one over all
     places there are, and find out the same."""
-    return any(_repeats(each) for each in _rows(plan.steps))
+    return any(_repeats(each) for each in rows(plan.steps))
 
 
-def _rows(steps: tuple[Step, ...]) -> list[tuple[Step, ...]]:
+def rows(steps: tuple[Step, ...]) -> list[tuple[Step, ...]]:
     """The steps and all rows of steps inside them."""
     found = [steps]
     for step in steps:
         for name in ("steps", "then", "otherwise"):
             inner: tuple[Step, ...] = getattr(step, name, ())
             if inner:
-                found += _rows(inner)
+                found += rows(inner)
     return found
 
 
@@ -183,4 +183,4 @@ def _changes_something(step: Step) -> bool:
     )
 
 
-__all__ = ["Doubt", "implausible"]
+__all__ = ["Doubt", "implausible", "rows"]

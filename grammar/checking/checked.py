@@ -22,7 +22,7 @@ from grammar.checking.deeds import (
 )
 from grammar.checking.evidence import Evidence, evidence_of
 from grammar.checking.misnamed import Misnamed, misnamed
-from grammar.checking.names import idle_names, misplaced, unbound
+from grammar.checking.names import gone_twice, idle_names, misplaced, unbound
 from grammar.checking.sources import Source, Sources, content_left, sort_of
 from grammar.checking.words import Weighty, content, weighty, words_of
 from grammar.lexicon import Question
@@ -158,6 +158,7 @@ class _Check:
         yield from (Objection("unbound", name) for name in unbound(self.plan))
         yield from (Objection("senseless", what) for what in misplaced(self.plan))
         yield from (Objection("senseless", name) for name in idle_names(self.plan))
+        yield from (Objection("senseless", method) for method in gone_twice(self.plan))
         senseless = implausible(self.plan)
         if senseless is not None:
             yield Objection("senseless", senseless.value, self.language.phrase(senseless.value))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from typing import Final
 
 from grammar.plan import Call, ForEach, ListOf, Plan, Recall, Remember, Try
+from grammar.plausible import rows
 from grammar.tidy import nodes
 from robot_api.methods import METHODS, NOTHING
 
@@ -54,3 +56,11 @@ def misplaced(plan: Plan) -> Iterator[str]:
     for node in nodes(plan.steps):
         if isinstance(node, Call) and node.method in ONLY_FINDS_OUT and node.save_as is None:
             yield node.method
+
+
+def gone_twice(plan: Plan) -> Iterator[str]:
+    """Places that the robot goes to when it has just gone there."""
+    for steps in rows(plan.steps):
+        for before, step in itertools.pairwise(steps):
+            if isinstance(step, Call) and step.method == "goto" and step == before:
+                yield step.method

@@ -45,7 +45,8 @@ def steps(d: Discourse, node: Node) -> Steps:
     """Clauses one after the other: `first`, then `rest`."""
 
     def make() -> None:
-        clauses: list[tuple[str, int]] = []
+        later: Steps = []
+        alongside: set[int] = set()
         each: Node | None = node
         further: list[Node] = []
         joint = "stop"
@@ -90,16 +91,19 @@ def steps(d: Discourse, node: Node) -> Steps:
             said_on_tour(d, before, scene)
             new = d.done[before:]
             places = gone_to(d, first, new) or said_at_each(d, places, new)
-            clauses.append((joint, len(d.done) - before))
+            if joint == "then" or first.start not in alongside:
+                later += new[:1]
             joint = str(each.production.fixed.get("joint", "and"))
             rest, beyond = each.parts.get("rest"), each.parts.get("further")
+            if isinstance(rest, Node) and plainly_joined(d, first.end, rest):
+                alongside.add(rest.start)
             if beside is not None:
                 further += [part for part in (beyond, rest) if isinstance(part, Node)]
                 rest, beyond = beside, None
             if isinstance(beyond, Node):  # after the rest
                 further.append(beyond)
             each = rest if isinstance(rest, Node) else further.pop() if further else None
-        d.done[:] = if_such(d, until_then(d, d.done))
+        d.done[:] = if_such(d, until_then(d, d.done, later))
         if d.depth > 1 and not d.done and only_said(node):
             # "make sure there is a cup in each office": nothing is done there, so it was no remark.
             words = d.words(node.start, node.end)
@@ -111,6 +115,15 @@ def steps(d: Discourse, node: Node) -> Steps:
         d.done[:] = exclusive(guard_finds(d, guard_found(speak_codes(d, d.done))))
 
     return d.sequence(make)
+
+
+def plainly_joined(d: Discourse, end: int, rest: Node) -> bool:
+    """Whether nothing but "and", or a mark, stands between two clauses, the first of which ends
+    there, and nothing in the second says that it comes after."""
+    after = {*d.language.speech.get("text_ends", ())}
+    between = {token.norm for token in d.tokens[end : rest.start] if token.kind != "mark"}
+    said = {token.norm for token in d.tokens[rest.start : chained(rest.parts["first"]).end]}
+    return between <= d.language.words_called("joins") and after.isdisjoint(between | said)
 
 
 def in_order(clause: Node) -> bool:

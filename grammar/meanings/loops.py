@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from math import ceil
 from typing import Final
 
 from grammar.chart import Leaf, Node
@@ -25,8 +24,11 @@ from grammar.meanings.round_ends import goes_round, is_sight, round_until, seeks
 from grammar.meanings.several_places import until_found
 from grammar.meanings.surveys import moved
 from grammar.meanings.waiting import (
+    A_MINUTE,
+    WITH_ONE,
     at_least,
     awaited,
+    for_so_long,
     looked_for_at_pace,
     looking_up,
     there_first,
@@ -40,7 +42,6 @@ from grammar.plan import (
     Call,
     Compare,
     Condition,
-    Elapsed,
     End,
     ForEach,
     Forever,
@@ -63,9 +64,6 @@ from grammar.tidy import in_each_round, mentions, nodes
 
 HOLDS: Final = frozenset({"goto", "dock", "show", "emotion", "wait"})
 """Methods after which something goes on by itself: "stay in the lobby until noon"."""
-WITH_ONE: Final = frozenset({"say", "ask", "guide", "gesture"})
-"""What is done with one person after the other."""
-A_MINUTE: Final = 60
 
 
 def stays(body: Steps) -> bool:
@@ -318,8 +316,8 @@ def _paced(d: Discourse, often: Node, body: Steps) -> Steps:
 
 
 def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
-    """For some time: as many rounds as there are pauses in it, else as many as there is time for,
-    which a program can tell to the minute."""
+    """For some time: as many rounds as there are pauses in it, else as many as there is time
+    for."""
     lasting = float(d.get(often, "lasting"))
     pause = A_MINUTE * 60 if "hourly" in often.parts else d.get(often, "pause")
     body = each_who_comes(d, make, at_once=pause is not None)
@@ -334,10 +332,7 @@ def _lasting(d: Discourse, often: Node, make: Callable[[], Steps]) -> Steps:
         raise NotUnderstood(
             d.language.phrase("cannot_time", time=words), gap=(part.start, part.end)
         )
-    begin = d.variable("begin")
-    time_left = Compare(Elapsed(Recall(begin)), "<", Number(ceil(lasting / A_MINUTE)))
-    *before, loop = there_first([While(time_left, tuple(looking_up(body)))])
-    return [*before, Remember(begin, Ask("clock", field="time")), loop]
+    return for_so_long(d, lasting, body)
 
 
 def each_who_comes(d: Discourse, make: Callable[[], Steps], at_once: bool = False) -> Steps:

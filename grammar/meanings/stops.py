@@ -22,12 +22,15 @@ from grammar.tidy import nodes
 
 SAID: Final = frozenset({"say", "ask", "show", "gesture", "emotion", "people"})
 """What is done wherever the robot is."""
+_PASSED: Final = frozenset({"from", "by"})
+"""What a rule for several places is marked with if the first ones are only on the way."""
 
 
 def gone_to(d: Discourse, clause: Node, steps: Steps) -> Items | None:
-    """The places that a clause goes to one after the other, if it does nothing else."""
+    """The places that a clause goes to one after the other, if it does nothing else; not those from
+    which, or by which, it only goes to another."""
     command = itself(clause)
-    if command.means != "go_places" or command.production.fixed.get("from"):
+    if command.means != "go_places" or not _PASSED.isdisjoint(command.production.fixed):
         return None
     going = [step for step in steps if isinstance(step, Call) and step.method == "goto"]
     return Items(tuple(step.arguments["place"] for step in going)) if going == steps else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from math import ceil
 from typing import Final
 
 import msgspec
@@ -33,12 +34,14 @@ from grammar.plan import (
     Call,
     Compare,
     Condition,
+    Elapsed,
     End,
     Forever,
     Holds,
     If,
     Number,
     Recall,
+    Remember,
     Repeat,
     RepeatUntil,
     Step,
@@ -48,8 +51,11 @@ from grammar.plan import (
 )
 from grammar.texts.judging import MESSAGES
 from grammar.texts.words import words_for
-from grammar.tidy import LOOPS, gives, nodes
+from grammar.tidy import LOOPS, gives, in_each_round, nodes
 
+WITH_ONE: Final = frozenset({"say", "ask", "guide", "gesture"})
+"""What is done with one person after the other."""
+A_MINUTE: Final = 60
 LOOK_EVERY: Final = 10
 """Seconds between two looks at a condition that is waited for."""
 
@@ -313,13 +319,14 @@ def moment(d: Discourse, node: Node) -> Steps:
     return [waiting]
 
 
-def until_then(d: Discourse, done: Steps) -> Steps:
+def until_then(d: Discourse, done: Steps, later: Steps) -> Steps:
     """The steps of a sequence in which what would go on without end is done until what was waited
-    for before: "stay in the lobby until noon and greet everybody who comes"; and in which somebody
-    who is led away in each round is waited for in each: "wait for visitors and take them to
-    radiology until five"."""
+    for before: "stay in the lobby until noon and greet everybody who comes", or as long as was
+    waited before, if it is not of those that were said to come `later`; and in which somebody who
+    is led away in each round is waited for in each: "wait for visitors and take them to radiology
+    until five"."""
     result: Steps = []
-    for step in done:
+    for step in _with_each_one(done, later):
         last = result[-1] if result else None
         if any(last is each for each in d.command.moments) and _awaits(step):
             result.pop()
@@ -327,6 +334,10 @@ def until_then(d: Discourse, done: Steps) -> Steps:
         if isinstance(step, Forever) and isinstance(last, While) and _only_waits(last.steps):
             step = RepeatUntil(negated(last.condition), tuple(looking_up(list(step.steps))))
             result.pop()
+        elif isinstance(step, Forever) and _goes_on_meanwhile(step, last, later):
+            result.pop()
+            *before, step = for_so_long(d, _lasting(last), list(step.steps))
+            result += before
         elif isinstance(step, LOOPS) and isinstance(last, Call) and _waits(last):
             if _waited_for(step.steps[0]) == last.arguments["thing"]:
                 result.pop()
@@ -338,6 +349,47 @@ def until_then(d: Discourse, done: Steps) -> Steps:
                 result.pop()
         result.append(step)
     return result
+
+
+def _with_each_one(done: Steps, later: Steps) -> Steps:
+    """The steps, where what is done with whoever is waited for again and again is one round: "wave
+    at everybody who comes in, and say hello"."""
+    result: Steps = []
+    for step in done:
+        last = result[-1] if result else None
+        with_one = isinstance(step, Call) and step.method in WITH_ONE
+        if (
+            with_one
+            and isinstance(last, Forever)
+            and _awaits(last)
+            and not any(each is step or each is last for each in later)
+        ):
+            result[-1] = in_each_round(last, step)
+        else:
+            result.append(step)
+    return result
+
+
+def _goes_on_meanwhile(endless: Forever, last: Step | None, later: Steps) -> bool:
+    """Whether somebody is waited for again and again while some time is waited anyway."""
+    afterwards = any(endless is each for each in later)
+    return _awaits(endless) and _lasting(last) >= A_MINUTE and not afterwards
+
+
+def _lasting(step: Step | None) -> float:
+    """How many seconds are waited; 0 if nothing is, or nobody can tell."""
+    if not isinstance(step, Call) or step.method != "wait":
+        return 0
+    seconds = step.arguments.get("seconds")
+    return seconds.value if isinstance(seconds, Number) else 0
+
+
+def for_so_long(d: Discourse, seconds: float, body: Steps) -> Steps:
+    """As many rounds as there is time for, which a program can tell to the minute."""
+    begin = d.variable("begin")
+    time_left = Compare(Elapsed(Recall(begin)), "<", Number(ceil(seconds / A_MINUTE)))
+    *before, loop = there_first([While(time_left, tuple(looking_up(body)))])
+    return [*before, Remember(begin, Ask("clock", field="time")), loop]
 
 
 def _waited_for(step: Step) -> Value | None:

@@ -164,6 +164,19 @@ def test_a_name_for_nothing_is_senseless() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    "does",
+    [
+        'goto("pharmacy")\ngoto("pharmacy")',
+        'for turn in range(2):\n    goto("pharmacy")\n    goto("pharmacy")',
+    ],
+)
+def test_to_go_where_it_has_just_gone_is_senseless(does: str) -> None:
+    order = Order("en", "go past the pharmacy twice", does)
+    told = [(each.kind, each.about) for each in order.checked().objections]
+    assert ("senseless", "goto") in told
+
+
 def test_insults_are_not_said() -> None:
     assert "refused" in kinds(ORDERS[5], 'find("Bob")\nsay("You stupid idiot.")')
 
