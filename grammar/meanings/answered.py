@@ -23,6 +23,7 @@ from grammar.meanings.surveys import (
     Survey,
     asked_so_far,
     asked_without_end,
+    asked_yet,
     exchanged,
     in_loop,
     polled_before,
@@ -270,6 +271,12 @@ def so(d: Discourse, node: Node) -> Condition:
 def answer_counts(d: Discourse, node: Node) -> Condition:
     """ "if it is more than seven": the answer, a number."""
     number = as_value(d.get(node, "number"))
+    if d.answers.said is not None and asked_yet(d):
+        surveys = polled_before(d)
+        if surveys[-1].options and in_loop(d, surveys[-1].call):
+            # "count the noes, and if it is more than two, ...": of all who were asked
+            many = counted_answers(d, surveys, d.answers.said)
+            return Compare(many, d.get(node, "operator", "=="), number)
     found = d.reports.last
     counted = found is not None and found.name == "count" and d.answers.last is None
     if counted and (isinstance(found.value, Recall) or found.place in (None, d.scene.at)):

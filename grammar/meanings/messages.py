@@ -89,8 +89,18 @@ def show_that(d: Discourse, node: Node) -> Steps:
     return [Call("show", {"text": Text(told_to(d, node.parts["text"], None))})]
 
 
+def with_its_subject(d: Discourse, part: Leaf | Node) -> Leaf | Node:
+    """A clause with the "that" before it, where that is not what joins it but what it is about:
+    "tell him that is wrong"."""
+    words = words_for(d.language)
+    before, first = d.tokens[part.start - 1].norm, d.tokens[part.start].norm
+    about_that = before in words.that & words.objects and first in words.finite
+    return replace(part, start=part.start - 1) if about_that else part
+
+
 def told_to(d: Discourse, part: Leaf | Node, person: Thing | None) -> str:
     """A reported clause as a sentence to its receiver."""
+    part = with_its_subject(d, part)
     room = room_spoken_of(d, part.start, part.end)
     if room:
         return sentence_form(in_words(d, part.start, part.end, room))

@@ -126,6 +126,11 @@ def person_in(d: Discourse, node: Node) -> Thing:
 @meaning("person_pronoun")
 def person_pronoun(d: Discourse, node: Node) -> Thing:
     """ "him", "her", "them": whose place this is, the person spoken of last, or whoever is here."""
+    articles = d.language.speech.get("articles", ())
+    if d.parted(node.start, node.end) and not {*d.norms(node.start, node.end)}.isdisjoint(articles):
+        # the "dem" of "zum" is the article of what follows, and nobody
+        part = d.words(node.start, node.end)
+        raise NotUnderstood(d.language.phrase("not_understood", part=part))
     host = host_here(d, node)
     if host is not None:
         d.called_so(host, node.start, node.end)

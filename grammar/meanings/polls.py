@@ -81,6 +81,8 @@ def polled(d: Discourse, kind: str, said: Said | None) -> Told:
         meant = _meant(d, surveys, said)
         d.answers = replace(d.answers, said=meant)
     answer: Wanted = d.answers.said or yes(d)
+    if kind == "many":
+        d.answers = replace(d.answers, said=answer)
     if kind == "list":  # of those who said yes, or of what they said
         agree, refuse = d.language.phrase("yes"), d.language.phrase("no")
         kind = "who" if set(surveys[-1].options) == {agree, refuse} else "answers"

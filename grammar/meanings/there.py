@@ -9,7 +9,7 @@ from typing import Final
 from grammar.chart import Node
 from grammar.discourse import ANYONE, START, Discourse, Meeting, Thing, Where
 from grammar.errors import NotUnderstood
-from grammar.meanings.answers import yes
+from grammar.meanings.answers import Wanted, yes
 from grammar.meanings.checked import checked
 from grammar.meanings.conditions import negated
 from grammar.meanings.deliveries import delivered_last
@@ -333,9 +333,9 @@ def counts_answers(d: Discourse, node: Node) -> bool:
 
 
 def so_many_agreed(d: Discourse, number: int, operator: str) -> Compare:
-    """Whether so many of those who were asked have said yes."""
+    """Whether so many of those who were asked have said yes, or what was told of last."""
     surveys = of_one_question(asked_before(d))
-    agree = yes(d)
+    agree: Wanted = d.answers.said or yes(d)
     if not set(agree.options) <= set(surveys[-1].options):
         raise NotUnderstood(d.language.phrase("count_what"))
     return Compare(counted_answers(d, surveys, agree), operator, Number(number))

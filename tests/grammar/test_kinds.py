@@ -782,3 +782,61 @@ def test_what_is_done_for_another_answer_is_not_done_for_this_one(
 )
 def test_where_it_is_wished_is_no_part_of_the_wish(language: str, order: str, wish: str) -> None:
     assert f'robot.say("{wish}")' in program(language, order)
+
+
+ASKED_ALL = {
+    "en": "ask everybody in the lobby whether they are hungry and {}",
+    "de": "frag alle in der Lobby, ob sie Hunger haben, und {}",
+    "fr": "demande à tous dans le hall s'ils ont faim et {}",
+}
+COUNTED = {
+    "en": [
+        *("count the yeses", "count the yes votes", "count how many say yes", "count the noes"),
+        *("count the answers", "tally all the replies"),
+    ],
+    "de": [
+        *("zähl die Ja-Stimmen", "zähl, wie viele ja sagen", "zähl die Antworten"),
+        *("zähl aus, wie viele nein sagen", "zähl alle Stimmen zusammen"),
+    ],
+    "fr": ["compte les oui", "compte combien disent oui"],
+}
+
+
+@pytest.mark.parametrize(
+    ("language", "counted"), [(code, each) for code, them in COUNTED.items() for each in them]
+)
+def test_answers_that_are_counted_are_no_things_that_lie_about(language: str, counted: str) -> None:
+    made = program(language, ASKED_ALL[language].format(counted))
+    assert "robot.count(" not in made and " += 1" in made, made
+
+
+@pytest.mark.parametrize("to", ["zum", "zur"])
+@pytest.mark.parametrize("then", ["laden, sobald dein Akku leer ist", "und sag hallo", ""])
+def test_the_article_in_a_contraction_is_nobody(to: str, then: str) -> None:
+    assert "find(" not in (said("de", f"fahr {to} {then}").program or "")
+
+
+TOO_MANY = {
+    "en": ("if it's more than two, wave", "if there are more than two, wave"),
+    "de": ("wenn es mehr als zwei sind, wink",),
+    "fr": ("si c'est plus de deux, fais signe",),
+}
+
+
+@pytest.mark.parametrize("language", TOO_MANY)
+def test_what_was_counted_of_the_answers_is_what_is_compared_then(language: str) -> None:
+    for counted, then in itertools.product(COUNTED[language], TOO_MANY[language]):
+        if "nein" in counted or "no" in counted.split() or "noes" in counted:
+            answer = "no" if language == "en" else "nein"
+        elif any(each in counted for each in ("answers", "replies", "Antworten", "Stimmen z")):
+            continue  # of which it is not said what is to be more
+        else:
+            answer = {"en": "yes", "de": "ja", "fr": "oui"}[language]
+        made = program(language, f"{ASKED_ALL[language].format(counted)}, {then}")
+        assert f"\nif said_{answer} > 2:\n    robot.gesture(" in made, made
+
+
+@pytest.mark.parametrize("verb", ["is", "was", "will be", "has been", "would be", "could be"])
+@pytest.mark.parametrize("order", ["tell Bob that {} easy", "say that {} easy"])
+def test_what_is_told_of_that_is_about_that(order: str, verb: str) -> None:
+    assert f'robot.say("That {verb} easy.")' in program("en", order.format(verb))
