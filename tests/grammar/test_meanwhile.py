@@ -35,7 +35,7 @@ def orders(joints: dict[str, tuple[str, ...]]) -> Iterator[tuple[str, str]]:
             yield language, "".join(parts)
 
 
-@pytest.mark.parametrize(("language", "words"), orders(MEANWHILE))
+@pytest.mark.parametrize(("language", "words"), list(orders(MEANWHILE)))
 def test_whoever_comes_while_it_stays_is_met_until_the_time_is_over(
     language: str, words: str
 ) -> None:
@@ -44,7 +44,7 @@ def test_whoever_comes_while_it_stays_is_met_until_the_time_is_over(
     assert "robot.wait(" not in text and "while True" not in text, text
 
 
-@pytest.mark.parametrize(("language", "words"), orders(AFTERWARDS))
+@pytest.mark.parametrize(("language", "words"), list(orders(AFTERWARDS)))
 def test_what_is_said_to_come_afterwards_does(language: str, words: str) -> None:
     text = program(language, words)
     assert text.index("robot.wait(600)") < text.index("while True:"), text
