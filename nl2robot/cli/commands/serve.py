@@ -276,6 +276,7 @@ def _say_where(server: Server, entrance: Entrance, options: argparse.Namespace) 
         _open_page(server, port)
     outdated = outdated_python()
     if outdated:
+        sys.stdout.flush()  # where both go to one file, it stands there in this order
         print(outdated, file=sys.stderr)
     print("Ctrl-C stops the robot and ends the server.", flush=True)
 

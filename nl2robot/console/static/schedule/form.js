@@ -134,8 +134,8 @@ class Form {
     for (const part of this.form.querySelectorAll('[data-for]')) {
       const kinds = part.dataset.for.split(' ').filter(Boolean);
       part.hidden = kinds.length > 0 && !kinds.includes(chosen);
-      for (const field of part.querySelectorAll('input, select')) field.disabled = part.hidden;
     }
+    for (const field of this.form.querySelectorAll('[data-for] :is(input, select)')) field.disabled = field.closest('[hidden]') !== null;
   }
 
   tell(sentence, ...more) {
