@@ -66,6 +66,7 @@ def test_a_conversation_outlives_the_server_and_says_what_became_of_its_run(
         expect(page.get_by_role("button", name="Approve and run")).to_be_enabled()
         first.process.kill()
         first.process.wait()
+        page.goto("about:blank")  # a page that is open loads itself anew when the server is back
     with serving(tmp_path, "--port", first.address.partition(":")[2]) as second:
         page.goto(second.url)
         expect(page.locator(".said.by-you").first).to_contain_text("go to radiology")
