@@ -31,7 +31,7 @@ from robot_api.errors import InvalidCall
 from robot_api.local_time import local_zone
 from robot_api.server import DEFAULT_PORT
 
-ENDS_WITHIN: Final = 10.0
+ENDS_WITHIN: Final = 25.0
 """Seconds that a robot has to say that what it did is over."""
 ACTIONS: Final = ("list", "run", "call-off", "stop", "key", "trust", "distrust")
 SHORT: Final = 6
