@@ -59,7 +59,7 @@ def misplaced(plan: Plan) -> Iterator[str]:
 
 
 def gone_twice(plan: Plan) -> Iterator[str]:
-    """Places that the robot goes to when it has just gone there."""
+    """Calls that go where the robot has just gone."""
     for steps in rows(plan.steps):
         for before, step in itertools.pairwise(steps):
             if isinstance(step, Call) and step.method == "goto" and step == before:

@@ -10,13 +10,12 @@ be read by another program.
 
 from __future__ import annotations
 
-import signal
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from grammar.planning.planner import Interrupted, Watch
+from nl2robot.ctrl_c import ctrl_c_unheard
 from nl2robot.errors import ExitStatus, UserError
 from nl2robot.plain import visible
 from nl2robot.translate.thinking import Progress, Thought
@@ -38,20 +37,6 @@ class GivenUp(UserError):
         super().__init__(words_in(language)["given_up"], ExitStatus.INTERRUPTED)
 
 
-@contextmanager
-def undisturbed() -> Iterator[None]:
-    """Ctrl-C is not heard meanwhile: whoever presses it twice wants no more than once, and what
-    puts the terminal back as it was must not be left half done."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-
-
 class Waiting:
     """Shows how far a language model is, once one is asked; until then, nothing. Any thread may
     tell it."""
@@ -70,7 +55,7 @@ class Waiting:
         return self
 
     def __exit__(self, *_: object) -> None:
-        with undisturbed(), self._lock:
+        with ctrl_c_unheard(), self._lock:
             self._over = True
             if self._live is not None:
                 self._live.stop()
@@ -130,7 +115,7 @@ def thought_aloud(think: Callable[[Watch], T], language: str) -> T:
         try:
             return thought.result()
         except (KeyboardInterrupt, Interrupted) as error:
-            with undisturbed():
+            with ctrl_c_unheard():
                 thought.give_up()
             if not waiting.begun:
                 raise
