@@ -104,7 +104,8 @@ class Ward:
     def __init__(self, station: SimulatedStation, robot: Robot, log: RunLog, clock: Clock) -> None:
         self.station, self.robot, self.log, self.clock = station, robot, log, clock
         self._events: queue.SimpleQueue[tuple[str, Mapping[str, Any]]] = queue.SimpleQueue()
-        robot.subscribe(("notice", "schedule"), lambda kind, data: self._events.put((kind, data)))
+        told = ("notice", "schedule", "schedule.buttons")
+        robot.subscribe(told, lambda kind, data: self._events.put((kind, data)))
 
     def add(self, program: str = ROUND, **given: Any) -> dict[str, Any]:
         values = {
